@@ -1,0 +1,66 @@
+#pragma once
+
+// What a surface model is: the concept that every one meets, and the values that they exchange.
+
+#include <lightswitch/core/math.hpp>
+#include <lightswitch/core/pdf.hpp>
+
+#include <concepts>
+#include <optional>
+#include <string>
+
+namespace lightswitch {
+
+/// What travels along a path: radiance (paths from the camera) or importance (paths from a light). They differ where light
+/// is refracted (Veach 1997, section 5.2).
+enum class Transport { radiance, importance };
+
+/// A BSDF evaluated for one pair of directions.
+struct BsdfValue {
+    Rgb value{0};         ///< the BSDF in 1/sr, without the cosine
+    SolidAnglePdf pdf{};  ///< density with which `sample` chooses that incident direction
+};
+
+/// A sampled direction.
+struct BsdfSample {
+    Vec3 wi{0, 0, 1};       ///< unit, local, away from the surface
+    Rgb weight{0};          ///< BSDF * |cosine| / density; for a specular lobe the ratio of the two Dirac distributions
+    SolidAnglePdf pdf{};    ///< density of `wi`; 0 for a specular lobe, which has none
+    bool specular = false;  ///< true when `wi` comes from a Dirac distribution
+    float eta = 1;          ///< relative index of refraction crossed from the side of `wo` to that of `wi`; 1 for reflection
+};
+
+/// The three terms of Phong's model by which the `phong` method shows a surface.
+struct PhongTerms {
+    Rgb diffuse{0.5f};
+    Rgb specular{0};
+    float shininess = 32;
+};
+
+/// A surface model. Directions are unit vectors in the shading frame (z is the normal), pointing away from the surface;
+/// `wo` is where the path comes from and `wi` where it goes. `u` is uniform in the unit cube: by custom x and y choose the
+/// direction and z the lobe. Implementations must be usable from several threads at once (no mutable state).
+///
+/// - `specular`: true when all lobes are Dirac distributions, so that `evaluate` is always zero;
+/// - `evaluate(wo, wi, transport)`: BSDF and density for a given pair;
+/// - `sample(wo, u, transport)`: a direction, or nothing when light is absorbed;
+/// - `problem()`: why the parameters are impossible, in words, or an empty string.
+///
+/// Optionally `phong()` returns the `PhongTerms` that represent the model.
+template <class B>
+concept Bsdf = requires(const B bsdf, const Vec3 direction, const Vec3 u, const Transport transport) {
+    { B::specular } -> std::convertible_to<bool>;
+    { bsdf.evaluate(direction, direction, transport) } -> std::same_as<BsdfValue>;
+    { bsdf.sample(direction, u, transport) } -> std::same_as<std::optional<BsdfSample>>;
+    { bsdf.problem() } -> std::convertible_to<std::string>;
+};
+
+/// Explains a reflectance that is not a fraction, or returns an empty string.
+inline std::string reflectance_problem(const char* name, const Rgb& value) {
+    for (int c = 0; c < 3; ++c)
+        if (!(value[c] >= 0 && value[c] <= 1))
+            return std::string(name) + " has a component of " + std::to_string(value[c]) + ", which is outside 0 to 1";
+    return {};
+}
+
+}  // namespace lightswitch

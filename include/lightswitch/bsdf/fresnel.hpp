@@ -1,0 +1,74 @@
+#pragma once
+
+// Fresnel's equations: how much unpolarised light a smooth boundary reflects. Exact, no approximation by powers of cosines.
+
+#include <lightswitch/core/math.hpp>
+
+#include <string>
+
+namespace lightswitch {
+
+/// What happens at a boundary between two transparent media.
+struct FresnelDielectric {
+    float reflectance;  ///< fraction of the power that is reflected, 0 to 1
+    float cos_t;        ///< cosine of the refracted direction, with the sign opposite to that of the incident one; 0 if none
+    float eta;          ///< index of refraction on the far side over that on the incident side
+};
+
+/// Reflectance and refraction for the signed cosine `cos_i` of the incident direction and `eta`, above 0, the index of
+/// refraction behind the surface (cos < 0) over that in front of it (Born and Wolf, Principles of Optics, section 1.5.2).
+///
+/// Written with q = eta * |cos_t| = sqrt(eta^2 - 1 + cos_i^2), in which nothing cancels when eta is near 1 or the
+/// direction is grazing. q^2 <= 0 is total internal reflection.
+inline FresnelDielectric fresnel_dielectric(float cos_i, float eta) {
+    const float relative = cos_i >= 0 ? eta : 1 / eta;
+    const float c = std::abs(cos_i);
+    const float contrast = (relative - 1) * (relative + 1);
+    const float q_squared = contrast + c * c;
+    if (!(q_squared > 0)) return {contrast == 0 ? 0.0f : 1.0f, 0, relative};
+    const float q = std::sqrt(q_squared);
+    const float perpendicular = contrast / square(c + q);
+    const float dense_c = relative * relative * c;
+    const float parallel = (dense_c - q) / (dense_c + q);
+    return {0.5f * (square(perpendicular) + square(parallel)), std::copysign(q / relative, -cos_i), relative};
+}
+
+/// Reflectance of a conductor whose index of refraction is eta - i k, in air or vacuum, for `cos_i` from 0 to 1
+/// (Born and Wolf, section 14.2). eta and k are not below 0 and not both 0. The result is within 0 to 1.
+///
+/// With a + i b the square root of (eta - i k)^2 - sin^2, both reflectances are ratios of sums of squares.
+inline float fresnel_conductor(float cos_i, float eta, float k) {
+    if (!(cos_i > 0)) return 1;
+    const float c_squared = cos_i * cos_i, s_squared = (1 - cos_i) * (1 + cos_i);
+    const float real = (eta - 1) * (eta + 1) + c_squared - k * k;
+    const float half_imaginary = eta * k;
+    const float larger = std::sqrt(0.5f * (std::sqrt(real * real + 4 * square(half_imaginary)) + std::abs(real)));
+    const float smaller = larger > 0 ? half_imaginary / larger : 0;
+    const float a = real >= 0 ? larger : smaller, b = real >= 0 ? smaller : larger;
+
+    const float perpendicular = (square(a - cos_i) + b * b) / (square(a + cos_i) + b * b);
+    const float ac = a * cos_i, bc_squared = b * b * c_squared;
+    const float ratio = (square(ac - s_squared) + bc_squared) / (square(ac + s_squared) + bc_squared);
+    return 0.5f * perpendicular * (1 + ratio);
+}
+
+/// `fresnel_conductor` for each colour.
+inline Rgb fresnel_conductor(float cos_i, const Rgb& eta, const Rgb& k) {
+    return {fresnel_conductor(cos_i, eta.x, k.x), fresnel_conductor(cos_i, eta.y, k.y),
+            fresnel_conductor(cos_i, eta.z, k.z)};
+}
+
+/// Explains an index of refraction that no conductor can have, or returns an empty string.
+inline std::string conductor_problem(const Rgb& eta, const Rgb& k) {
+    constexpr float limit = 1e8f;  // fourth powers must stay finite
+    for (int c = 0; c < 3; ++c) {
+        if (!(eta[c] >= 0 && eta[c] <= limit))
+            return "eta has a component of " + std::to_string(eta[c]) + ", which is outside 0 to 1e8";
+        if (!(k[c] >= 0 && k[c] <= limit))
+            return "k has a component of " + std::to_string(k[c]) + ", which is outside 0 to 1e8";
+        if (eta[c] == 0 && k[c] == 0) return "eta and k are both 0 in one component; an ideal mirror has eta 0 and k 1";
+    }
+    return {};
+}
+
+}  // namespace lightswitch

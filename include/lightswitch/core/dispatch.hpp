@@ -1,0 +1,56 @@
+#pragma once
+
+// Choosing among a fixed list of types by index, without a table of function pointers.
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <utility>
+
+namespace lightswitch {
+
+/// Calls `f(std::integral_constant<std::size_t, index>{})` for the `index` given at run time (below `N`): a chain of
+/// comparisons that the compiler can inline into its surroundings; with one alternative no comparison is left.
+template <std::size_t N, std::size_t I = 0, class F>
+[[gnu::always_inline]] inline decltype(auto) dispatch(std::size_t index, F&& f) {
+    static_assert(I < N);
+    if constexpr (I + 1 == N) {
+        return f(std::integral_constant<std::size_t, I>{});
+    } else {
+        if (index == I) return f(std::integral_constant<std::size_t, I>{});
+        return dispatch<N, I + 1>(index, std::forward<F>(f));
+    }
+}
+
+/// The position of `T` in `List...`, or the length of the list when it is not there.
+template <class T, class... List>
+constexpr std::size_t index_of() {
+    std::size_t index = 0;
+    const bool found = ((std::is_same_v<T, List> || (++index, false)) || ...);
+    return found ? index : sizeof...(List);
+}
+
+template <class T, class... List>
+inline constexpr bool contains = (std::is_same_v<T, List> || ...);
+
+/// Which element of which type: the type in the upper 5 bits, the position among its like below. Made empty.
+class TypedIndex {
+public:
+    static constexpr std::size_t max_position = (1u << 27) - 1;
+    static constexpr std::size_t max_kind = 30;
+
+    constexpr TypedIndex() = default;
+    /// `kind` at most `max_kind`, `position` at most `max_position`; unchecked.
+    constexpr TypedIndex(std::size_t kind, std::size_t position)
+        : bits_(static_cast<std::uint32_t>(kind << 27 | position)) {}
+
+    constexpr explicit operator bool() const { return bits_ != empty; }
+    constexpr std::size_t kind() const { return bits_ >> 27; }
+    constexpr std::size_t position() const { return bits_ & max_position; }
+
+private:
+    static constexpr std::uint32_t empty = 0xffffffffu;
+    std::uint32_t bits_ = empty;
+};
+
+}  // namespace lightswitch

@@ -1,0 +1,71 @@
+#pragma once
+
+// Vectors, matrices, colours and directions. The only file that includes GLM.
+
+#include <glm/glm.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace lightswitch {
+
+using Vec2 = glm::vec2;
+using Vec3 = glm::vec3;
+/// Linear RGB: radiance, reflectance or throughput, with the primaries of ITU-R BT.709.
+using Rgb = glm::vec3;
+using DVec2 = glm::dvec2;
+using DVec3 = glm::dvec3;
+using DMat4 = glm::dmat4;
+
+inline constexpr float pi = 3.14159265358979323846f;
+inline constexpr float inv_pi = 0.31830988618379067154f;
+inline constexpr float infinity = std::numeric_limits<float>::infinity();
+/// Half the distance from 1 to the next float: the relative error of one rounded operation.
+inline constexpr float unit_roundoff = 0x1p-24f;
+
+/// Bound on the relative error of `n` rounded operations in a row (Higham 2002, section 3.1).
+constexpr float gamma_bound(int n) {
+    const float e = static_cast<float>(n) * unit_roundoff;
+    return e / (1 - e);
+}
+
+inline float dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline float length_squared(const Vec3& v) { return dot(v, v); }
+inline Vec3 normalize(const Vec3& v) { return v * (1.0f / std::sqrt(length_squared(v))); }
+inline float max_component(const Vec3& v) { return std::max(v.x, std::max(v.y, v.z)); }
+inline float square(float x) { return x * x; }
+inline float safe_sqrt(float x) { return std::sqrt(std::max(x, 0.0f)); }
+inline bool is_black(const Rgb& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
+
+/// Luminance of linear RGB (BT.709 weights).
+template <class T>
+constexpr T luminance(const glm::vec<3, T>& c) {
+    return T(0.2126) * c.x + T(0.7152) * c.y + T(0.0722) * c.z;
+}
+
+/// True when `x` is neither infinite nor NaN. Reads the bits, so that it also works under -ffast-math.
+inline bool is_finite(float x) { return (std::bit_cast<std::uint32_t>(x) & 0x7f800000u) != 0x7f800000u; }
+inline bool is_finite(const Vec3& v) { return is_finite(v.x) && is_finite(v.y) && is_finite(v.z); }
+
+/// An orthonormal basis whose `normal` is the local z axis.
+///
+/// Built without branches or square roots (Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 2017).
+struct Basis {
+    Vec3 tangent, bitangent, normal;
+
+    explicit Basis(const Vec3& unit_normal) : normal(unit_normal) {
+        const float sign = std::copysign(1.0f, normal.z);
+        const float a = -1.0f / (sign + normal.z);
+        const float b = normal.x * normal.y * a;
+        tangent = Vec3(1 + sign * normal.x * normal.x * a, sign * b, -sign * normal.x);
+        bitangent = Vec3(b, sign + normal.y * normal.y * a, -normal.y);
+    }
+
+    Vec3 to_local(const Vec3& v) const { return {dot(v, tangent), dot(v, bitangent), dot(v, normal)}; }
+    Vec3 to_world(const Vec3& v) const { return v.x * tangent + v.y * bitangent + v.z * normal; }
+};
+
+}  // namespace lightswitch

@@ -1,0 +1,45 @@
+#pragma once
+
+// Probability densities as types: one per measure, so that two measures cannot be mixed by mistake.
+
+#include <lightswitch/core/math.hpp>
+
+namespace lightswitch {
+
+/// Density with respect to solid angle, in 1/sr. Arithmetic between densities of the same measure is allowed;
+/// a change of measure must name its geometry term.
+struct SolidAnglePdf {
+    float value = 0;
+
+    friend SolidAnglePdf operator*(SolidAnglePdf p, float probability) { return {p.value * probability}; }
+    friend auto operator<=>(const SolidAnglePdf&, const SolidAnglePdf&) = default;
+};
+
+/// Density with respect to surface area, in 1 / (render unit)^2.
+struct AreaPdf {
+    float value = 0;
+
+    friend AreaPdf operator*(AreaPdf p, float probability) { return {p.value * probability}; }
+    friend auto operator<=>(const AreaPdf&, const AreaPdf&) = default;
+};
+
+/// Changes area density to solid angle density as seen from a point at `distance_squared`, where `abs_cosine` is the
+/// cosine at the surface that is seen (Veach 1997, equation 8.10). Infinite at grazing angles.
+inline SolidAnglePdf to_solid_angle(AreaPdf p, float distance_squared, float abs_cosine) {
+    return {p.value * distance_squared / abs_cosine};
+}
+
+/// The inverse of `to_solid_angle`.
+inline AreaPdf to_area(SolidAnglePdf p, float distance_squared, float abs_cosine) {
+    return {p.value * abs_cosine / distance_squared};
+}
+
+/// Multiple importance sampling weight of the strategy that has density `ours`, against one other strategy
+/// (power heuristic with exponent 2; Veach 1997, section 9.2.3). Both 0 gives 0; an infinite `ours` gives 1.
+inline float power_heuristic(SolidAnglePdf ours, SolidAnglePdf other) {
+    if (!(ours.value > 0)) return 0;
+    const float ratio = other.value / ours.value;
+    return 1 / (1 + ratio * ratio);
+}
+
+}  // namespace lightswitch

@@ -1,0 +1,199 @@
+#pragma once
+
+// RAII over Embree: a device, and one committed scene of triangles and spheres that rays can be traced through.
+
+#include <lightswitch/core/error.hpp>
+#include <lightswitch/embree/api.hpp>
+#include <lightswitch/scene/ray.hpp>
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <utility>
+
+namespace lightswitch::embree {
+
+/// Numbers of rays traced by the calling thread since it started; read them before and after, and subtract.
+struct RayCount {
+    std::uint64_t intersect = 0;
+    std::uint64_t occluded = 0;
+};
+inline constinit thread_local RayCount ray_count{};
+
+/// An Embree device. Errors that Embree reports are kept and thrown as `Error` by `check`, never out of Embree's callback.
+/// Safe to share between threads.
+class Device {
+public:
+    /// `config` is Embree's own string, for example "threads=2,verbose=1,isa=avx2"; empty for the defaults.
+    explicit Device(const std::string& config = "") : state_(std::make_unique<State>()) {
+        device_.reset(rtcNewDevice(config.empty() ? nullptr : config.c_str()));
+        if (!device_)
+            throw Error("Embree could not make a device from the configuration \"" + config + "\" (error " +
+                        std::to_string(static_cast<int>(rtcGetDeviceError(nullptr))) + ")");
+        rtcSetDeviceErrorFunction(device_.get(), &State::on_error, state_.get());
+        rtcSetDeviceMemoryMonitorFunction(device_.get(), &State::on_memory, state_.get());
+        // An unknown key in the string is reported here rather than by a null device.
+        const RTCError error = rtcGetDeviceError(device_.get());
+        if (error != RTC_ERROR_NONE)
+            throw Error("Embree refused the configuration \"" + config + "\" (error " +
+                        std::to_string(static_cast<int>(error)) + ")");
+    }
+
+    RTCDevice get() const { return device_.get(); }
+
+    /// Throws the first error recorded since the last call, saying what was being done.
+    void check(const std::string& doing) const {
+        const std::lock_guard lock(state_->mutex);
+        if (state_->message.empty()) return;
+        const std::string message = std::exchange(state_->message, {});
+        throw Error("Embree, while " + doing + ": " + message);
+    }
+
+    /// Bytes that Embree holds on this device.
+    std::int64_t memory() const { return state_->memory.load(); }
+
+private:
+    struct State {
+        std::mutex mutex;
+        std::string message;
+        std::atomic<std::int64_t> memory{0};
+
+        static void on_error(void* self, RTCError code, const char* text) {
+            auto& state = *static_cast<State*>(self);
+            const std::lock_guard lock(state.mutex);
+            if (state.message.empty())
+                state.message = (text ? text : "no text") + std::string(" (error ") +
+                                std::to_string(static_cast<int>(code)) + ")";
+        }
+        static bool on_memory(void* self, ssize_t bytes, bool) {
+            static_cast<State*>(self)->memory += bytes;
+            return true;
+        }
+    };
+    struct Release {
+        void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+    };
+    std::unique_ptr<State> state_;
+    std::unique_ptr<RTCDeviceTy, Release> device_;
+};
+
+/// What a ray hit, as Embree says it.
+struct Hit {
+    std::uint32_t geometry;   ///< `Accelerator::triangle_geometry` or `sphere_geometry`
+    std::uint32_t primitive;  ///< index among the triangles or spheres
+    float u, v;               ///< barycentric weights of a triangle's second and third corner
+    float distance;           ///< in multiples of the ray's direction
+};
+
+/// A committed, immutable Embree scene. Tracing is safe from any number of threads.
+class Accelerator {
+public:
+    static constexpr std::uint32_t triangle_geometry = 0, sphere_geometry = 1;
+
+    struct SphereData {
+        Vec3 center;
+        float radius;
+    };
+
+    /// Copies the data into Embree's own (padded) buffers and builds. `robust` asks Embree for watertight edges. Either list
+    /// may be empty.
+    Accelerator(const std::string& config, bool robust, std::span<const Vec3> positions,
+                std::span<const std::array<std::uint32_t, 3>> triangles, std::span<const SphereData> spheres)
+        : device_(config) {
+        const auto start = std::chrono::steady_clock::now();
+        scene_.reset(rtcNewScene(device_.get()));
+        if (robust) rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
+        device_.check("making a scene");
+        if (!triangles.empty()) {
+            const Geometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
+            fill(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, positions);
+            fill(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangles);
+            attach(geometry, triangle_geometry);
+        }
+        if (!spheres.empty()) {
+            const Geometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_SPHERE_POINT));
+            fill(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, spheres);
+            attach(geometry, sphere_geometry);
+        }
+        rtcCommitScene(scene_.get());
+        device_.check("building the acceleration structure of " + std::to_string(triangles.size()) + " triangles and " +
+                      std::to_string(spheres.size()) + " spheres");
+        build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    }
+
+    /// Closest hit between `ray.near` and `ray.far`; false when there is none.
+    bool intersect(const Ray& ray, Hit& hit) const {
+        RTCRayHit query;
+        set(query.ray, ray);
+        query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+        query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        ++ray_count.intersect;
+        embree::intersect(scene_.get(), query);
+        hit = {query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar};
+        return hit.geometry != RTC_INVALID_GEOMETRY_ID;
+    }
+
+    /// Whether anything lies between `ray.near` and `ray.far`.
+    bool occluded(const Ray& ray) const {
+        RTCRay query;
+        set(query, ray);
+        ++ray_count.occluded;
+        embree::occluded(scene_.get(), query);
+        return query.tfar < 0;
+    }
+
+    double build_seconds() const { return build_seconds_; }
+    std::int64_t memory() const { return device_.memory(); }
+
+private:
+    struct ReleaseScene {
+        void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+    };
+    struct ReleaseGeometry {
+        void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
+    };
+    using Geometry = std::unique_ptr<RTCGeometryTy, ReleaseGeometry>;
+
+    template <class T>
+    void fill(const Geometry& geometry, RTCBufferType type, RTCFormat format, std::span<const T> data) {
+        void* const buffer =
+            rtcSetNewGeometryBuffer(geometry.get(), type, 0, format, sizeof(T), data.size());
+        device_.check("allocating a buffer of " + std::to_string(data.size()) + " elements");
+        if (!buffer) throw Error("Embree gave no memory for a buffer of " + std::to_string(data.size()) + " elements");
+        std::copy(data.begin(), data.end(), static_cast<T*>(buffer));
+    }
+
+    void attach(const Geometry& geometry, std::uint32_t id) {
+        // Embree 4 gives geometries mask 1 and tests masks when built so; all ones is right for every version.
+        rtcSetGeometryMask(geometry.get(), 0xffffffffu);
+        rtcCommitGeometry(geometry.get());
+        rtcAttachGeometryByID(scene_.get(), geometry.get(), id);
+        device_.check("adding a geometry");
+    }
+
+    static void set(RTCRay& query, const Ray& ray) {
+        query.org_x = ray.origin.x;
+        query.org_y = ray.origin.y;
+        query.org_z = ray.origin.z;
+        query.tnear = ray.near;
+        query.dir_x = ray.direction.x;
+        query.dir_y = ray.direction.y;
+        query.dir_z = ray.direction.z;
+        query.time = 0;
+        query.tfar = ray.far;
+        query.mask = 0xffffffffu;
+        query.id = 0;
+        query.flags = 0;
+    }
+
+    Device device_;
+    std::unique_ptr<RTCSceneTy, ReleaseScene> scene_;
+    double build_seconds_ = 0;
+};
+
+}  // namespace lightswitch::embree

@@ -1,0 +1,150 @@
+#pragma once
+
+// Files read whole, and written so that a reader never sees half of one.
+
+#include <lightswitch/core/error.hpp>
+
+#include <array>
+#include <cerrno>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <random>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+namespace lightswitch {
+
+namespace detail {
+
+inline Origin file_origin(const std::filesystem::path& path) {
+    Origin where;
+    where.file = path.string();
+    return where;
+}
+
+inline std::string errno_text(int code) { return std::generic_category().message(code); }
+
+struct CloseFile {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using FileHandle = std::unique_ptr<std::FILE, CloseFile>;
+
+/// A new file beside `target` that takes its place on `commit()` and vanishes without it.
+class TemporaryFile {
+public:
+    explicit TemporaryFile(std::filesystem::path target) : target_(std::move(target)) {
+        const std::string name = target_.filename().string().substr(0, 200);  // leaves room for the suffix in 255 bytes
+        std::random_device random;
+        for (int attempt = 0; attempt < 16 && !file_; ++attempt) {
+            std::array<char, 24> suffix{};
+            std::snprintf(suffix.data(), suffix.size(), ".tmp-%08x%08x", random(), random());
+            path_ = target_.parent_path() / ("." + name + suffix.data());
+            file_.reset(std::fopen(path_.string().c_str(), "wbx"));  // x: never somebody else's file
+            if (!file_ && errno != EEXIST) break;
+        }
+        if (!file_) fail(file_origin(target_), "cannot create a file in this directory: " + errno_text(errno));
+    }
+
+    TemporaryFile(const TemporaryFile&) = delete;
+    TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+    ~TemporaryFile() {
+        file_.reset();
+        std::error_code ignored;
+        if (!committed_) std::filesystem::remove(path_, ignored);
+    }
+
+    /// Writes everything, closes, and renames. Throws `Error` when any of it fails (a full disk may show only then).
+    void commit(std::string_view bytes) {
+        errno = 0;
+        bool ok = std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) == bytes.size();
+        ok = ok && std::fflush(file_.get()) == 0;
+        int code = errno;
+        if (std::fclose(file_.release()) != 0 && ok) {
+            ok = false;
+            code = errno;
+        }
+        if (!ok) fail(file_origin(target_), "writing failed, nothing is left behind: " + errno_text(code));
+        std::error_code error;
+        std::filesystem::rename(path_, target_, error);
+        if (error) fail(file_origin(target_), "cannot put the finished file in place: " + error.message());
+        committed_ = true;
+    }
+
+private:
+    std::filesystem::path target_, path_;
+    FileHandle file_;
+    bool committed_ = false;
+};
+
+/// The file that writing to `path` replaces: links are followed, so that they stay links.
+inline std::filesystem::path resolve_output(const std::filesystem::path& path) {
+    std::error_code error;
+    if (!std::filesystem::is_symlink(path, error)) return path;
+    const auto resolved = std::filesystem::weakly_canonical(path, error);
+    return error ? path : resolved;
+}
+
+/// Throws `Error` when a file of that name cannot be, as far as looking can tell.
+inline void check_output_name(const std::filesystem::path& path) {
+    const Origin where = file_origin(path);
+    if (path.filename().empty()) fail(where, "names no file to write");
+    std::error_code error;
+    const auto target = std::filesystem::status(path, error);
+    if (std::filesystem::is_directory(target)) fail(where, "is a directory; name a file in it");
+    if (std::filesystem::exists(target)) {
+        if (!std::filesystem::is_regular_file(target)) fail(where, "is not a regular file and is not replaced");
+        if (!FileHandle(std::fopen(path.string().c_str(), "rb+")))
+            fail(where, "exists and may not be written: " + errno_text(errno));
+    }
+    const auto parent = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+    if (std::filesystem::is_directory(parent, error)) return;
+    if (std::filesystem::exists(parent, error)) fail(where, "'" + parent.string() + "' is not a directory");
+    fail(where, "the directory '" + parent.string() + "' does not exist; create it first");
+}
+
+}  // namespace detail
+
+/// Writes `bytes` to `path` so that the file is either complete or as it was before: to a temporary name in the same
+/// directory, then by renaming. Replaces an existing file; a symbolic link keeps pointing to what is written.
+///
+/// Not flushed to the device: a power failure right after may lose it. Throws `Error` (missing directory, directory
+/// instead of a file, no permission, full disk) and then leaves no temporary file. Calls for different paths may run
+/// in parallel.
+inline void write_file_atomically(const std::filesystem::path& path, std::string_view bytes) {
+    const auto target = detail::resolve_output(path);
+    detail::check_output_name(target);
+    detail::TemporaryFile(target).commit(bytes);
+}
+
+/// Throws `Error` unless `write_file_atomically(path, ...)` can be expected to work. Creates a file in the directory
+/// to find out, and removes it. Call it before the work whose result is to be written.
+inline void check_file_writable(const std::filesystem::path& path) {
+    const auto target = detail::resolve_output(path);
+    detail::check_output_name(target);
+    detail::TemporaryFile{target};
+}
+
+/// The bytes of a regular file. Throws `Error` when there is none, it cannot be read, or it exceeds `max_bytes`.
+inline std::string read_file(const std::filesystem::path& path, std::uintmax_t max_bytes) {
+    const Origin where = detail::file_origin(path);
+    std::error_code error;
+    const auto status = std::filesystem::status(path, error);
+    if (!std::filesystem::exists(status)) fail(where, "no such file");
+    if (std::filesystem::is_directory(status)) fail(where, "is a directory, not a file");
+    if (!std::filesystem::is_regular_file(status)) fail(where, "is not a regular file");
+    const std::uintmax_t size = std::filesystem::file_size(path, error);
+    if (error) fail(where, "cannot be read: " + error.message());
+    if (size > max_bytes)
+        fail(where, "has " + std::to_string(size) + " bytes; at most " + std::to_string(max_bytes) + " are read");
+    const detail::FileHandle file(std::fopen(path.string().c_str(), "rb"));
+    if (!file) fail(where, "cannot be read: " + detail::errno_text(errno));
+    std::string bytes(static_cast<std::size_t>(size), '\0');
+    if (std::fread(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) fail(where, "reading failed");
+    return bytes;
+}
+
+}  // namespace lightswitch

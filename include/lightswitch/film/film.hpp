@@ -1,0 +1,124 @@
+#pragma once
+
+// The film: one estimate of the whole image per iteration, and their running sums.
+
+#include <lightswitch/core/parallel.hpp>
+#include <lightswitch/film/image.hpp>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace lightswitch {
+
+/// A contribution to any pixel.
+struct Splat {
+    std::uint32_t pixel;  ///< row * width + column
+    Rgb value;
+};
+
+/// Accumulates iterations, each an estimate of the whole image made of slots (a pixel's own sample, written by one worker) and
+/// splats (contributions that land anywhere). Sums are in double and in a fixed order.
+///
+/// `slot` may be called from several threads for different pixels; everything else from one thread at a time.
+class Film {
+public:
+    Film(int width, int height) : width_(width), height_(height) {
+        Image::check_size(width, height);
+        slots_.resize(area(), Rgb(0));
+        sum_.resize(area(), DVec3(0));
+        sum_of_squares_.resize(area(), DVec3(0));
+    }
+
+    int width() const { return width_; }
+    int height() const { return height_; }
+    std::size_t area() const { return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_); }
+    /// Iterations accumulated so far.
+    std::uint64_t iterations() const { return iterations_; }
+
+    /// This iteration's sample of one pixel (row * width + column).
+    Rgb& slot(std::size_t pixel) { return slots_[pixel]; }
+
+    /// Adds splats to this iteration, in the order given.
+    void add(std::span<const Splat> splats) {
+        if (!splats.empty() && splatted_.empty()) splatted_.resize(area(), DVec3(0));
+        for (const Splat& splat : splats) splatted_[splat.pixel] += DVec3(splat.value);
+    }
+
+    /// Ends an iteration: its estimate joins the sums.
+    void commit(const Executor auto& executor) {
+        for_each_row(executor, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                DVec3 value(slots_[i]);
+                if (!splatted_.empty()) value += splatted_[i];
+                sum_[i] += value;
+                sum_of_squares_[i] += value * value;
+            }
+        });
+        discard(executor);
+        ++iterations_;
+    }
+
+    /// Forgets the iteration that is under way.
+    void discard(const Executor auto& executor) {
+        for_each_row(executor, [&](std::size_t begin, std::size_t end) {
+            std::fill(slots_.begin() + std::ptrdiff_t(begin), slots_.begin() + std::ptrdiff_t(end), Rgb(0));
+            if (!splatted_.empty())
+                std::fill(splatted_.begin() + std::ptrdiff_t(begin), splatted_.begin() + std::ptrdiff_t(end), DVec3(0));
+        });
+    }
+
+    /// Mean over the iterations; black before the first.
+    Image image() const {
+        Image result(width_, height_);
+        if (iterations_ > 0)
+            for (std::size_t i = 0; i < area(); ++i) result.pixels()[i] = Rgb(sum_[i] / double(iterations_));
+        return result;
+    }
+
+    /// Estimated variance of each pixel of `image()`, from the spread of its iterations; 0 before the second. With Sobol'
+    /// points, whose samples repel each other, it is an upper estimate.
+    Image variance() const {
+        Image result(width_, height_);
+        if (iterations_ > 1)
+            for (std::size_t i = 0; i < area(); ++i) result.pixels()[i] = Rgb(variance_of_mean(i));
+        return result;
+    }
+
+    /// Estimated root mean square error of the image, as a fraction of its mean: 0.01 means that a pixel is typically off by
+    /// 1 % of the average pixel. Infinite before the second iteration, and for a black image 0.
+    double relative_error() const {
+        if (iterations_ < 2) return std::numeric_limits<double>::infinity();
+        DVec3 mean(0), variance(0);
+        for (std::size_t i = 0; i < area(); ++i) {
+            mean += sum_[i] / double(iterations_);
+            variance += variance_of_mean(i);
+        }
+        const double mean_level = (mean.x + mean.y + mean.z) / (3 * double(area()));
+        const double mean_square = (variance.x + variance.y + variance.z) / (3 * double(area()));
+        return mean_level > 0 ? std::sqrt(mean_square) / mean_level : 0;
+    }
+
+private:
+    DVec3 variance_of_mean(std::size_t i) const {
+        const double n = double(iterations_);
+        const DVec3 spread = sum_of_squares_[i] - sum_[i] * sum_[i] / n;
+        return glm::max(spread, DVec3(0)) / (n * (n - 1));
+    }
+
+    void for_each_row(const Executor auto& executor, const auto& work) {
+        constexpr std::size_t rows = 16;
+        const std::size_t width = static_cast<std::size_t>(width_), height = static_cast<std::size_t>(height_);
+        executor.for_each((height + rows - 1) / rows, [&](std::size_t band) {
+            work(band * rows * width, std::min((band + 1) * rows, height) * width);
+        });
+    }
+
+    int width_, height_;
+    std::uint64_t iterations_ = 0;
+    std::vector<Rgb> slots_;
+    std::vector<DVec3> splatted_;  // empty until the first splat: most methods have none
+    std::vector<DVec3> sum_, sum_of_squares_;
+};
+
+}  // namespace lightswitch

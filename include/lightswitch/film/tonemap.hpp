@@ -1,0 +1,63 @@
+#pragma once
+
+// From linear radiance to the 8-bit values of a screen.
+
+#include <lightswitch/core/math.hpp>
+#include <lightswitch/film/image.hpp>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+namespace lightswitch {
+
+/// The sRGB curve (IEC 61966-2-1): linear light in [0,1] to the encoded value in [0,1]. Not clamped.
+inline float srgb_encode(float linear) {
+    return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
+}
+
+/// The inverse of `srgb_encode`.
+inline float srgb_decode(float encoded) {
+    return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
+}
+
+/// The linear RGB of an 8-bit sRGB colour: `srgb(255, 0, 255)` is magenta.
+inline Rgb srgb(int red, int green, int blue) {
+    const auto channel = [](int value) { return srgb_decode(static_cast<float>(value) / 255); };
+    return {channel(red), channel(green), channel(blue)};
+}
+
+/// True for a NaN. Reads the bits, so that it also works under -ffast-math.
+inline bool is_nan(float x) { return (std::bit_cast<std::uint32_t>(x) & 0x7fffffffu) > 0x7f800000u; }
+
+/// What a picture shows where there is no number (NaN): magenta, which no tone mapped radiance should ever look like.
+inline constexpr Rgb not_a_number_color{1, 0, 1};
+
+/// Scales radiance by 2^`stops` and clamps each channel to [0,1]; still linear. A NaN in any channel gives
+/// `not_a_number_color`; infinities clamp like any other value.
+inline Rgb expose(const Rgb& radiance, float stops) {
+    if (is_nan(radiance.x) || is_nan(radiance.y) || is_nan(radiance.z)) return not_a_number_color;
+    const float scale = std::exp2(stops);
+    const auto channel = [scale](float value) { return value > 0 ? std::min(value * scale, 1.0f) : 0.0f; };
+    return {channel(radiance.x), channel(radiance.y), channel(radiance.z)};
+}
+
+/// 8-bit sRGB of linear RGB in [0,1], rounded to the nearest.
+inline std::array<std::uint8_t, 3> to_srgb8(const Rgb& linear) {
+    const auto channel = [](float value) { return static_cast<std::uint8_t>(srgb_encode(value) * 255 + 0.5f); };
+    return {channel(linear.x), channel(linear.y), channel(linear.z)};
+}
+
+/// The image as 8-bit sRGB, three bytes per pixel, row by row from the top: `expose`, the sRGB curve, rounding.
+inline std::string tone_map(const Image& image, float stops) {
+    std::string bytes;
+    bytes.reserve(image.pixels().size() * 3);
+    for (const Rgb& pixel : image.pixels())
+        for (const std::uint8_t value : to_srgb8(expose(pixel, stops))) bytes += static_cast<char>(value);
+    return bytes;
+}
+
+}  // namespace lightswitch

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <lightswitch/light/light.hpp>
+
+namespace lightswitch {
+
+/// Parallel light from infinitely far away.
+struct DirectionalLight {
+    static constexpr bool infinite = true;
+
+    Vec3 towards;        ///< unit, from the scene to the light
+    Rgb irradiance;      ///< on a surface that faces the light, W/m^2
+    float scene_radius;  ///< of the sphere that the light must fill
+
+    double power() const { return double(luminance(irradiance)) * double(pi) * double(square(scene_radius)); }
+
+    LightSample sample(const SurfacePoint& from, const Vec2&) const {
+        return {.wi = towards, .radiance = irradiance, .pdf = {1}, .dirac = true, .visibility = from.spawn(towards)};
+    }
+};
+
+}  // namespace lightswitch

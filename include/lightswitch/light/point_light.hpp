@@ -1,0 +1,27 @@
+#pragma once
+
+#include <lightswitch/light/light.hpp>
+
+namespace lightswitch {
+
+/// A point that sends the same intensity in all directions.
+struct PointLight {
+    static constexpr bool infinite = false;
+
+    Vec3 position;
+    Rgb intensity;  ///< W/sr, times the square of the render space's scale
+
+    double power() const { return double(luminance(intensity)) * 4 * double(pi); }
+
+    LightSample sample(const SurfacePoint& from, const Vec2&) const {
+        const Vec3 to_light = position - from.position;
+        const float distance2 = length_squared(to_light);
+        return {.wi = to_light * (1 / std::sqrt(distance2)),
+                .radiance = intensity / distance2,
+                .pdf = {1},
+                .dirac = true,
+                .visibility = from.segment_to(position)};
+    }
+};
+
+}  // namespace lightswitch

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <lightswitch/core/warp.hpp>
+#include <lightswitch/light/light.hpp>
+
+namespace lightswitch {
+
+/// An emitting sphere; its front (outside, or inside when `inward`) emits the same radiance in all directions.
+///
+/// From outside, sampled uniformly over the solid angle that it covers (Shirley, Wang, Zimmerman, "Monte Carlo Techniques for
+/// Direct Lighting Calculations", 1996); from inside, by area.
+struct SphereLight {
+    static constexpr bool infinite = false;
+
+    Vec3 center;
+    float radius;
+    bool inward;
+    Rgb emission;
+    float offset;  ///< as in `SurfacePoint`
+
+    double power() const { return double(luminance(emission)) * 4 * double(pi * pi) * double(radius) * double(radius); }
+
+    Rgb emitted(const SurfacePoint& at, const Vec3& direction) const {
+        return dot(at.normal, direction) > 0 ? emission : Rgb(0);
+    }
+
+    LightSample sample(const SurfacePoint& from, const Vec2& u) const {
+        const Vec3 to_center = center - from.position;
+        const float distance2 = length_squared(to_center);
+        if (!(distance2 > square(radius))) return sample_from_inside(from, u);
+        if (inward) return {};
+        const float one_minus_cosine = cone(distance2);
+        const float distance = std::sqrt(distance2);
+        const Vec3 local = uniform_cone(u, one_minus_cosine);
+        const Vec3 wi = Basis(to_center / distance).to_world(local);
+        // The near intersection of the direction with the sphere, from the angle alone: stable for any distance.
+        const float sine2 = square(local.x) + square(local.y);
+        const float reach = distance * local.z - safe_sqrt(square(radius) - distance2 * sine2);
+        const Vec3 normal = normalize(from.position + reach * wi - center);
+        return {.wi = wi,
+                .radiance = emission,
+                .pdf = uniform_cone_pdf(one_minus_cosine),
+                .dirac = false,
+                .visibility = from.segment_to(center + (radius + offset) * normal)};
+    }
+
+    SolidAnglePdf pdf(const SurfacePoint& from, const Vec3& wi, const SurfacePoint& hit) const {
+        const float distance2 = length_squared(center - from.position);
+        if (distance2 > square(radius)) return uniform_cone_pdf(cone(distance2));
+        return to_solid_angle(area_pdf(), length_squared(hit.position - from.position), std::abs(dot(wi, hit.normal)));
+    }
+
+private:
+    AreaPdf area_pdf() const { return {1 / (4 * pi * square(radius))}; }
+
+    /// 1 - cosine of half the angle that the sphere covers.
+    float cone(float distance2) const {
+        const float sine2 = square(radius) / distance2;
+        return sine2 / (1 + safe_sqrt(1 - sine2));
+    }
+
+    LightSample sample_from_inside(const SurfacePoint& from, const Vec2& u) const {
+        const Vec3 outward = uniform_sphere(u);
+        const Vec3 to_light = center + radius * outward - from.position;
+        const float distance2 = length_squared(to_light);
+        const Vec3 wi = to_light * (1 / std::sqrt(distance2));
+        const float cosine = dot(wi, outward);
+        if (!inward || !(cosine > 0)) return {};
+        return {.wi = wi,
+                .radiance = emission,
+                .pdf = to_solid_angle(area_pdf(), distance2, cosine),
+                .dirac = false,
+                .visibility = from.segment_to(center + (radius - offset) * outward)};
+    }
+};
+
+}  // namespace lightswitch

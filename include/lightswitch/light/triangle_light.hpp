@@ -1,0 +1,45 @@
+#pragma once
+
+#include <lightswitch/core/warp.hpp>
+#include <lightswitch/light/light.hpp>
+
+namespace lightswitch {
+
+/// One triangle of an emitting mesh; it emits the same radiance in all directions from its front. Sampled by area.
+struct TriangleLight {
+    static constexpr bool infinite = false;
+
+    Vec3 corner, edge1, edge2;
+    Vec3 normal;  ///< unit, on the emitting side
+    Rgb emission;
+    float area;
+    float offset;  ///< as in `SurfacePoint`
+
+    double power() const { return double(luminance(emission)) * double(area) * double(pi); }
+
+    Rgb emitted(const SurfacePoint& at, const Vec3& direction) const {
+        return dot(at.normal, direction) > 0 ? emission : Rgb(0);
+    }
+
+    LightSample sample(const SurfacePoint& from, const Vec2& u) const {
+        const Vec2 b = uniform_triangle(u);
+        const Vec3 position = corner + b.x * edge1 + b.y * edge2;
+        const Vec3 to_light = position - from.position;
+        const float distance2 = length_squared(to_light);
+        const Vec3 wi = to_light * (1 / std::sqrt(distance2));
+        const float cosine = -dot(wi, normal);
+        if (!(cosine > 0)) return {};
+        return {.wi = wi,
+                .radiance = emission,
+                .pdf = to_solid_angle(AreaPdf{1 / area}, distance2, cosine),
+                .dirac = false,
+                .visibility = from.segment_to(position + offset * normal)};
+    }
+
+    SolidAnglePdf pdf(const SurfacePoint& from, const Vec3& wi, const SurfacePoint& hit) const {
+        const float distance2 = length_squared(hit.position - from.position);
+        return to_solid_angle(AreaPdf{1 / area}, distance2, std::abs(dot(wi, hit.normal)));
+    }
+};
+
+}  // namespace lightswitch

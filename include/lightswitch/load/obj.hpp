@@ -1,0 +1,185 @@
+#pragma once
+
+// Wavefront OBJ: triangles and polygons with optional vertex normals.
+
+#include <lightswitch/core/error.hpp>
+#include <lightswitch/film/file.hpp>
+#include <lightswitch/load/mesh_file.hpp>
+#include <lightswitch/load/text.hpp>
+
+#include <filesystem>
+#include <unordered_map>
+
+namespace lightswitch {
+
+/// Reads a Wavefront OBJ file of at most 1 GiB, in double precision.
+///
+/// Polygons become fans around their first corner. Corners are one vertex when they agree in position, texture coordinate
+/// and normal, so that normals computed by `Mesh::smooth` keep an edge where the texture has a seam (as in Mitsuba 3.9); with
+/// `FileNormals::ignore`, when they agree in position. Where the file's normals point is the front. Groups, materials,
+/// texture coordinates, vertex colours, lines and points are skipped.
+///
+/// Throws `Error` with the line for anything malformed, an index out of range, a normal of length 0 in use, or normals at
+/// some corners only, and when there is no face. Thread safe.
+Mesh load_obj(const std::filesystem::path& path, FileNormals normals = FileNormals::use);
+
+namespace detail {
+
+class ObjReader {
+public:
+    ObjReader(const std::filesystem::path& path, FileNormals use) : origin_{path.string(), 0, {}}, use_(use) {}
+
+    Mesh read(std::string_view text) {
+        while (!text.empty()) statement(next_statement(text));
+        origin_.line = 0;
+        if (mesh_.triangles.empty()) fail(origin_, "contains no faces");
+        mesh_.face_along_normals();
+        return std::move(mesh_);
+    }
+
+private:
+    /// Index from 0 into the lists of positions, texture coordinates and normals; -1 for none.
+    using Corner = std::array<std::int64_t, 3>;
+    struct CornerHash {
+        std::size_t operator()(const Corner& corner) const {
+            std::uint64_t hash = 0;
+            for (const std::int64_t index : corner) {
+                hash = (hash ^ static_cast<std::uint64_t>(index)) * 0x9e3779b97f4a7c15u;
+                hash ^= hash >> 29;
+            }
+            return static_cast<std::size_t>(hash);
+        }
+    };
+
+    /// Cuts one line off `text`, without its comment, together with the lines that it continues on.
+    std::string_view next_statement(std::string_view& text) {
+        joined_.clear();
+        origin_.line += skipped_lines_ + 1;
+        skipped_lines_ = 0;
+        while (true) {
+            const std::size_t end = std::min(text.find('\n'), text.size());
+            std::string_view line = text.substr(0, end);
+            text.remove_prefix(std::min(end + 1, text.size()));
+            line = line.substr(0, line.find('#'));
+            line = line.substr(0, line.find_last_not_of(" \t\r") + 1);
+            const bool continues = line.ends_with('\\');
+            if (continues) line.remove_suffix(1);
+            if (!continues && joined_.empty()) return line;
+            joined_.append(line).append(1, ' ');
+            if (!continues || text.empty()) return joined_;
+            ++skipped_lines_;
+        }
+    }
+
+    void statement(std::string_view line) {
+        const std::string_view keyword = next_word(line);
+        if (keyword.empty()) return;
+        if (keyword == "v") {
+            positions_.push_back(vector(line, keyword, 3, 7));
+        } else if (keyword == "vn") {
+            normals_.push_back(vector(line, keyword, 3, 3));
+        } else if (keyword == "vt") {
+            vector(line, keyword, 1, 3);
+            ++texture_coordinates_;
+        } else if (keyword == "f") {
+            face(line);
+        } else if (std::find(skipped.begin(), skipped.end(), keyword) == skipped.end()) {
+            fail(origin_, "unknown statement " + quote(keyword));
+        }
+    }
+
+    DVec3 vector(std::string_view line, std::string_view keyword, int fewest, int most) {
+        DVec3 result(0);
+        int count = 0;
+        for (std::string_view word = next_word(line); !word.empty(); word = next_word(line), ++count) {
+            const auto number = parse_number(word);
+            if (!number) fail(origin_, quote(word) + " is not a finite number");
+            if (count < 3) result[count] = *number;
+        }
+        if (count < fewest || count > most)
+            fail(origin_, quote(keyword) + " takes " + std::to_string(fewest) +
+                              (most > fewest ? " to " + std::to_string(most) : std::string()) + " numbers, not " +
+                              std::to_string(count));
+        return result;
+    }
+
+    void face(std::string_view line) {
+        std::array<std::uint32_t, 3> triangle{};
+        int count = 0;
+        for (std::string_view word = next_word(line); !word.empty(); word = next_word(line)) {
+            const std::uint32_t vertex = corner(word);
+            if (count >= 2) {
+                triangle[2] = vertex;
+                mesh_.triangles.push_back(triangle);
+            }
+            triangle[count == 0 ? 0 : 1] = vertex;
+            ++count;
+        }
+        if (count < 3) fail(origin_, "a face needs at least 3 corners, not " + std::to_string(count));
+    }
+
+    std::uint32_t corner(std::string_view word) {
+        static constexpr std::array<const char*, 3> names{"vertex", "texture coordinate", "normal"};
+        const std::array<std::size_t, 3> sizes{positions_.size(), texture_coordinates_, normals_.size()};
+        Corner key{-1, -1, -1};
+        std::string_view rest = word;
+        for (std::size_t i = 0;; ++i) {
+            const std::size_t slash = rest.find('/');
+            const std::string_view part = rest.substr(0, slash);
+            const bool may_be_empty = i == 1 && slash != std::string_view::npos;
+            if (i == 3 || (part.empty() && !may_be_empty))
+                fail(origin_, quote(word) + " is not a corner (v, v/vt, v//vn or v/vt/vn)");
+            if (!part.empty()) key[i] = index(part, sizes[i], names[i]);
+            if (slash == std::string_view::npos) break;
+            rest.remove_prefix(slash + 1);
+        }
+        return vertex(use_ == FileNormals::use ? key : Corner{key[0], -1, -1});
+    }
+
+    std::int64_t index(std::string_view word, std::size_t size, const char* what) {
+        const auto number = parse_integer(word);
+        if (!number) fail(origin_, quote(word) + " is not an index");
+        const auto count = static_cast<std::int64_t>(size);
+        if (*number == 0 || *number > count || *number < -count)
+            fail(origin_, std::string(what) + " " + std::to_string(*number) + " does not exist: " + std::to_string(count) +
+                              (count == 1 ? " is" : " are") + " defined above");
+        return *number > 0 ? *number - 1 : count + *number;
+    }
+
+    std::uint32_t vertex(const Corner& key) {
+        const auto [entry, is_new] = vertices_.try_emplace(key, static_cast<std::uint32_t>(mesh_.positions.size()));
+        if (!is_new) return entry->second;
+
+        const bool has_normal = key[2] >= 0;
+        if (!mesh_.positions.empty() && has_normal == mesh_.normals.empty())
+            fail(origin_, "some corners have a normal and some have none: give all of them normals, or none");
+        mesh_.positions.push_back(positions_[static_cast<std::size_t>(key[0])]);
+        if (has_normal) {
+            const DVec3& normal = normals_[static_cast<std::size_t>(key[2])];
+            if (normal == DVec3(0)) fail(origin_, "normal " + std::to_string(key[2] + 1) + " has no direction");
+            mesh_.normals.push_back(normal);
+        }
+        return entry->second;
+    }
+
+    static constexpr std::array<std::string_view, 13> skipped{"o",      "g",      "s",   "mg",    "usemtl",     "usemap", "mtllib",
+                                                              "lod",    "bevel",  "l",   "p",     "shadow_obj", "trace_obj"};
+
+    Origin origin_;
+    FileNormals use_;
+    std::string joined_;
+    int skipped_lines_ = 0;
+    std::vector<DVec3> positions_, normals_;
+    std::size_t texture_coordinates_ = 0;
+    std::unordered_map<Corner, std::uint32_t, CornerHash> vertices_;
+    Mesh mesh_;
+};
+
+}  // namespace detail
+
+inline Mesh load_obj(const std::filesystem::path& path, FileNormals normals) {
+    const std::string text = read_file(path, detail::max_mesh_bytes);
+    return detail::ObjReader(path, normals).read(text);
+}
+
+}  // namespace lightswitch

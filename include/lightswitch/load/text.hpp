@@ -1,0 +1,88 @@
+#pragma once
+
+// What every loader needs: numbers, words, line numbers, and quotes of text that may be hostile.
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+namespace lightswitch::detail {
+
+/// The finite number that `word` spells, from its first to its last character, or nothing. Decimal or scientific notation
+/// whatever the locale; a leading plus is allowed.
+std::optional<double> parse_number(std::string_view word);
+/// The same for an integer that fits in 64 bits.
+std::optional<std::int64_t> parse_integer(std::string_view word);
+
+/// Cuts the first word off `text`; empty at the end. Words are separated by any of `separators`.
+std::string_view next_word(std::string_view& text, std::string_view separators = " \t\r\n");
+
+/// `text` fit for an error message: one line of printable ASCII, shortened when it is long.
+std::string shown(std::string_view text);
+/// The same in double quotes.
+std::string quote(std::string_view text);
+
+/// Finds the line of a byte offset in a text.
+class LineIndex {
+public:
+    explicit LineIndex(std::string_view text);
+    /// 1-based line of `offset`.
+    int line(std::size_t offset) const;
+
+private:
+    std::vector<std::size_t> newlines_;
+};
+
+inline std::optional<double> parse_number(std::string_view word) {
+    if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
+    double value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc() || end != word.data() + word.size()) return {};
+    // From the bits, so that "inf" and "nan" are also refused under -ffast-math.
+    constexpr std::uint64_t exponent = 0x7ff0000000000000u;
+    if ((std::bit_cast<std::uint64_t>(value) & exponent) == exponent) return {};
+    return value;
+}
+
+inline std::optional<std::int64_t> parse_integer(std::string_view word) {
+    if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
+    std::int64_t value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc() || end != word.data() + word.size()) return {};
+    return value;
+}
+
+inline std::string_view next_word(std::string_view& text, std::string_view separators) {
+    const std::size_t begin = std::min(text.find_first_not_of(separators), text.size());
+    const std::size_t end = std::min(text.find_first_of(separators, begin), text.size());
+    const std::string_view word = text.substr(begin, end - begin);
+    text.remove_prefix(end);
+    return word;
+}
+
+inline std::string shown(std::string_view text) {
+    constexpr std::size_t longest = 60;
+    std::string result(text.substr(0, longest));
+    for (char& c : result)
+        if (c < ' ' || c > '~') c = '?';
+    return text.size() > longest ? result + "..." : result;
+}
+
+inline std::string quote(std::string_view text) { return "\"" + shown(text) + "\""; }
+
+inline LineIndex::LineIndex(std::string_view text) {
+    for (std::size_t i = text.find('\n'); i != std::string_view::npos; i = text.find('\n', i + 1)) newlines_.push_back(i);
+}
+
+inline int LineIndex::line(std::size_t offset) const {
+    const auto before = std::lower_bound(newlines_.begin(), newlines_.end(), offset);
+    return 1 + static_cast<int>(before - newlines_.begin());
+}
+
+}  // namespace lightswitch::detail

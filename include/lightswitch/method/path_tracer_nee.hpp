@@ -1,0 +1,85 @@
+#pragma once
+
+#include <lightswitch/bsdf/bsdf.hpp>
+#include <lightswitch/light/light.hpp>
+#include <lightswitch/method/roulette.hpp>
+#include <lightswitch/render/method.hpp>
+
+#include <optional>
+
+namespace lightswitch {
+
+/// Path tracing with next event estimation: at every vertex one point of one light is connected directly, and joined with the
+/// directions that the BSDF samples by multiple importance sampling (Veach and Guibas 1995; power heuristic).
+struct PathTracerNee {
+    static constexpr std::string_view name = "path-nee";
+    static constexpr Kind kind = Kind::unbiased;
+
+    int max_depth = PathLength{}.max_depth;  ///< see `PathLength`
+    int rr_depth = PathLength{}.rr_depth;
+
+    Rgb radiance(const auto& scene, Ray ray, auto& sampler) const {
+        Rgb sum(0), throughput(1);
+        float eta = 1;
+        std::optional<SurfacePoint> previous;  // where light sampling could have found what the path meets next
+        SolidAnglePdf previous_pdf;            // and with which density the BSDF chose the direction instead
+        for (int depth = 1;; ++depth) {
+            const auto hit = scene.intersect(ray);
+            if (!hit) {
+                const Rgb radiance = scene.environment(ray.direction);
+                const float weight =
+                    previous ? power_heuristic(previous_pdf, scene.environment_pdf(*previous, ray.direction)) : 1;
+                sum += throughput * radiance * weight;
+                break;
+            }
+            const Vec3 wo = -ray.direction;
+            if (hit->light) {
+                const Rgb radiance = scene.emitted(*hit, wo);
+                if (!is_black(radiance)) {
+                    const float weight =
+                        previous ? power_heuristic(previous_pdf, scene.light_pdf(*previous, ray.direction, *hit)) : 1;
+                    sum += throughput * radiance * weight;
+                }
+            }
+            if (depth == max_depth) break;
+
+            const Basis basis = hit->shading_frame();
+            const Vec3 local_wo = basis.to_local(wo);
+            const Vec2 direction = sampler.next_2d(), choices = sampler.next_2d();
+            const Vec2 on_light = sampler.next_2d();
+            const float which_light = sampler.next_1d();
+            const auto scattered = scene.with_bsdf(*hit, [&](const auto& bsdf) {
+                if constexpr (!std::remove_cvref_t<decltype(bsdf)>::specular)
+                    sum += throughput * direct(scene, *hit, basis, local_wo, bsdf, which_light, on_light);
+                return bsdf.sample(local_wo, Vec3(direction, choices.x), Transport::radiance);
+            });
+            if (!scattered) break;
+            throughput *= scattered->weight;
+            eta *= scattered->eta;
+            if (!survives_roulette(throughput, eta, depth, rr_depth, choices.y)) break;
+            if (scattered->specular) {
+                previous.reset();
+            } else {
+                previous = hit;
+                previous_pdf = scattered->pdf;
+            }
+            ray = hit->spawn(basis.to_world(scattered->wi));
+        }
+        return sum;
+    }
+
+private:
+    /// Light from one sampled point of one light, weighted against meeting it by sampling the BSDF.
+    static Rgb direct(const auto& scene, const SurfacePoint& at, const Basis& basis, const Vec3& local_wo, const auto& bsdf,
+                      float which_light, const Vec2& on_light) {
+        const LightSample light = scene.sample_light(at, which_light, on_light);
+        if (!(light.pdf.value > 0)) return Rgb(0);
+        const Vec3 local_wi = basis.to_local(light.wi);
+        const BsdfValue scattering = bsdf.evaluate(local_wo, local_wi, Transport::radiance);
+        if (is_black(scattering.value) || scene.occluded(light.visibility)) return Rgb(0);
+        const float weight = light.dirac ? 1 : power_heuristic(light.pdf, scattering.pdf);
+        return scattering.value * light.radiance * (std::abs(local_wi.z) / light.pdf.value * weight);
+    }
+};
+
+}  // namespace lightswitch

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <lightswitch/bsdf/bsdf.hpp>
+#include <lightswitch/render/method.hpp>
+#include <lightswitch/scene/scene.hpp>
+
+namespace lightswitch {
+
+/// Local illumination after Phong ("Illumination for Computer Generated Pictures", CACM 1975): ambient, diffuse and specular
+/// terms from the scene's own materials, with one shadow ray to one point of each light. No randomness but the pixel filter.
+///
+/// Each luminous shape acts as a light at its centroid, with hard shadows; an environment only brightens everything.
+struct Phong {
+    static constexpr std::string_view name = "phong";
+    static constexpr Kind kind = Kind::heuristic;
+
+    float ambient = 0.5f;  ///< ambient light, as a fraction of what the lights would give if spread over the whole scene
+
+    Rgb radiance(const auto& scene, const Ray& ray, auto&) const {
+        const auto hit = scene.intersect(ray);
+        if (!hit) return scene.environment(ray.direction);
+        const Vec3 wo = -ray.direction;
+        const PhongTerms terms = scene.with_bsdf(*hit, [](const auto& bsdf) {
+            if constexpr (requires { bsdf.phong(); })
+                return bsdf.phong();
+            else
+                return PhongTerms{};
+        });
+        // Both sides of a surface are lit: a picture shows more than a hole.
+        const Vec3 normal = dot(hit->shading_normal, wo) < 0 ? -hit->shading_normal : hit->shading_normal;
+        Rgb sum = scene.emitted(*hit, wo);
+        for (const Emitter& emitter : scene.emitters()) {
+            sum += terms.diffuse * inv_pi * ambient_irradiance(emitter);
+            if (emitter.kind == Emitter::Kind::environment) continue;
+            const Arrival light = arrival(emitter, *hit);
+            const float cosine = dot(light.wi, normal);
+            if (!(cosine > 0) || is_black(light.irradiance) || !visible(scene, *hit, emitter, light)) continue;
+            const Vec3 mirrored = 2 * cosine * normal - light.wi;
+            const float highlight = std::pow(std::max(dot(mirrored, wo), 0.0f), terms.shininess);
+            sum += light.irradiance * inv_pi *
+                   (terms.diffuse * cosine + terms.specular * (highlight * (terms.shininess + 2) / 2));
+        }
+        return sum;
+    }
+
+private:
+    struct Arrival {
+        Vec3 wi;          // unit, towards the light
+        Vec3 to_light;    // its length is the distance
+        Rgb irradiance;   // on a surface that faces the light
+    };
+
+    static Arrival arrival(const Emitter& emitter, const SurfacePoint& at) {
+        if (emitter.kind == Emitter::Kind::directional) return {emitter.direction, emitter.direction, emitter.strength};
+        const Vec3 to_light = emitter.position - at.position;
+        const float distance2 = length_squared(to_light);
+        if (!(distance2 > 0)) return {Vec3(0), Vec3(0), Rgb(0)};
+        const Vec3 wi = to_light / std::sqrt(distance2);
+        const float facing = emitter.kind == Emitter::Kind::point ? 1.0f : projected_area(emitter, wi);
+        return {wi, to_light, emitter.strength * (facing / distance2)};
+    }
+
+    /// The area of an emitter as seen along `wi`: exact for flat ones, and a quarter of the surface for closed convex ones
+    /// (Cauchy), whose vector area vanishes.
+    static float projected_area(const Emitter& emitter, const Vec3& wi) {
+        const bool closed = length_squared(emitter.vector_area) < square(0.1f * emitter.area);
+        return closed ? emitter.area / 4 : std::max(-dot(emitter.vector_area, wi), 0.0f);
+    }
+
+    /// The light's flux spread evenly over a sphere of radius 1, which holds the scene: its order of magnitude is right for any
+    /// scene, and no unit enters.
+    Rgb ambient_irradiance(const Emitter& emitter) const {
+        switch (emitter.kind) {
+        case Emitter::Kind::environment: return pi * emitter.strength;
+        case Emitter::Kind::directional: return ambient / 4 * emitter.strength;
+        case Emitter::Kind::point: return ambient * emitter.strength;
+        default: return ambient / 4 * emitter.area * emitter.strength;
+        }
+    }
+
+    static bool visible(const auto& scene, const SurfacePoint& at, const Emitter& emitter, const Arrival& light) {
+        if (emitter.kind == Emitter::Kind::directional) return !scene.occluded(at.spawn(light.wi));
+        const Ray segment = at.segment_to(at.position + light.to_light);
+        if (emitter.kind == Emitter::Kind::point) return !scene.occluded(segment);
+        // The centroid of a curved light lies inside it: meeting the light itself is no shadow.
+        const auto blocker = scene.intersect(segment);
+        return !blocker || (blocker->light && belongs(scene.light_number(blocker->light), emitter));
+    }
+
+    static bool belongs(std::size_t number, const Emitter& emitter) {
+        return number >= emitter.first_light && number < emitter.first_light + emitter.light_count;
+    }
+};
+
+}  // namespace lightswitch

@@ -1,0 +1,200 @@
+#pragma once
+
+// One iteration as a method sees it: the scene, and two verbs that run in parallel.
+
+#include <lightswitch/core/parallel.hpp>
+#include <lightswitch/core/sampler.hpp>
+#include <lightswitch/embree/accelerator.hpp>
+#include <lightswitch/film/film.hpp>
+#include <lightswitch/scene/ray.hpp>
+
+#include <algorithm>
+#include <mutex>
+#include <stop_token>
+#include <vector>
+
+namespace lightswitch {
+
+/// A value that was not finite, and how to meet it again: render that one pixel with that seed and iteration.
+struct NonFinite {
+    std::uint64_t iteration = 0;
+    std::uint64_t seed = 0;
+    std::uint32_t pixel = 0;  ///< row * width + column
+
+    friend auto operator<=>(const NonFinite&, const NonFinite&) = default;
+};
+
+/// Counts over all iterations.
+struct RenderCounts {
+    std::uint64_t rays = 0;         ///< closest-hit and visibility rays
+    std::uint64_t shadow_rays = 0;  ///< visibility rays among them
+    std::uint64_t paths = 0;        ///< light paths started by `Frame::paths`
+    std::uint64_t splats = 0;
+    std::uint64_t non_finite = 0;              ///< contributions that were replaced by black
+    std::vector<NonFinite> first_non_finite;   ///< the first 16 of them, in the order of iteration and pixel
+};
+
+namespace detail {
+
+/// What one work unit found out; units share nothing while they run.
+struct UnitReport {
+    std::uint64_t rays = 0, shadow_rays = 0, non_finite = 0;
+    std::vector<NonFinite> where;
+};
+
+/// Counts the rays of a unit by the thread's counters before and after.
+class UnitScope {
+public:
+    explicit UnitScope(UnitReport& report) : report_(report), before_(embree::ray_count) {}
+    ~UnitScope() {
+        const auto& now = embree::ray_count;
+        report_.shadow_rays += now.occluded - before_.occluded;
+        report_.rays += now.occluded - before_.occluded + now.intersect - before_.intersect;
+    }
+    UnitScope(const UnitScope&) = delete;
+    UnitScope& operator=(const UnitScope&) = delete;
+
+private:
+    UnitReport& report_;
+    embree::RayCount before_;
+    FlushDenormals flush_;
+};
+
+}  // namespace detail
+
+/// Collects the splats of one work unit.
+class Splatter {
+public:
+    Splatter(std::vector<Splat>& splats, detail::UnitReport& report, const Film& film, std::uint64_t iteration,
+             std::uint64_t seed)
+        : splats_(&splats), report_(&report), width_(film.width()), height_(film.height()), iteration_(iteration),
+          seed_(seed) {}
+
+    /// Adds `value` to the pixel that holds the point `at` (columns and rows from the top left corner of the film). Points off
+    /// the film are ignored; values that are not finite are counted and dropped.
+    void splat(const Vec2& at, const Rgb& value) {
+        if (!(at.x >= 0 && at.y >= 0 && at.x < static_cast<float>(width_) && at.y < static_cast<float>(height_))) return;
+        const auto pixel = static_cast<std::uint32_t>(at.y) * static_cast<std::uint32_t>(width_) +
+                           static_cast<std::uint32_t>(at.x);
+        if (!is_finite(value)) {
+            ++report_->non_finite;
+            report_->where.push_back({iteration_, seed_, pixel});
+            return;
+        }
+        splats_->push_back({pixel, value});
+    }
+
+private:
+    std::vector<Splat>* splats_;
+    detail::UnitReport* report_;
+    int width_, height_;
+    std::uint64_t iteration_, seed_;
+};
+
+/// The view that a method has of a render: one iteration of it. Made by the loop.
+template <class SceneType, Executor E>
+class Frame {
+public:
+    Frame(const SceneType& scene, Film& film, const E& executor, const Filter& filter, Sampling sampling, std::uint64_t seed,
+          std::uint64_t iteration, std::stop_token stop, RenderCounts& counts)
+        : scene_(scene), film_(film), executor_(executor), filter_(filter), points_(sampling, seed, iteration), seed_(seed),
+          iteration_(iteration), stop_(std::move(stop)), counts_(counts) {}
+
+    const SceneType& scene() const { return scene_; }
+    int width() const { return film_.width(); }
+    int height() const { return film_.height(); }
+    std::uint64_t iteration() const { return iteration_; }
+    const E& executor() const { return executor_; }
+    /// True when the loop has been asked to end; the iteration's result is then thrown away, so a method may return early.
+    bool stopped() const { return stop_.stop_requested(); }
+
+    /// Calls `fn(ray, sampler)` once for every pixel and adds the `Rgb` that it returns to the pixel. The ray comes from the
+    /// camera through a point of the pixel's filter.
+    void pixels(const auto& fn) {
+        const int columns = (width() + tile - 1) / tile, rows = (height() + tile - 1) / tile;
+        std::vector<detail::UnitReport> reports(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+        executor_.for_each(reports.size(), [&](std::size_t unit) {
+            if (stopped()) return;
+            const int x0 = static_cast<int>(unit) % columns * tile, y0 = static_cast<int>(unit) / columns * tile;
+            const detail::UnitScope scope(reports[unit]);
+            for (int y = y0; y < std::min(y0 + tile, height()); ++y)
+                for (int x = x0; x < std::min(x0 + tile, width()); ++x) sample_pixel(x, y, fn, reports[unit]);
+        });
+        gather(reports);
+    }
+
+    /// Calls `fn(index, sampler, splatter)` for every index in [0, n): typically one light path each. Splats are added to the
+    /// film in the order of the index, whatever the number of threads.
+    void paths(std::uint64_t n, const auto& fn) {
+        counts_.paths += n;
+        const std::uint64_t units = (n + paths_per_unit - 1) / paths_per_unit;
+        for (std::uint64_t first = 0; first < units && !stopped(); first += units_per_wave) {
+            const std::size_t wave = static_cast<std::size_t>(std::min<std::uint64_t>(units_per_wave, units - first));
+            std::vector<detail::UnitReport> reports(wave);
+            std::vector<std::vector<Splat>> splats(wave);
+            executor_.for_each(wave, [&](std::size_t unit) {
+                if (stopped()) return;
+                const detail::UnitScope scope(reports[unit]);
+                Splatter splatter(splats[unit], reports[unit], film_, iteration_, seed_);
+                const std::uint64_t begin = (first + unit) * paths_per_unit;
+                for (std::uint64_t i = begin; i < std::min(begin + paths_per_unit, n); ++i) {
+                    Sampler sampler(points_, path_stream, i);
+                    fn(i, sampler, splatter);
+                }
+            });
+            for (const auto& unit : splats) {
+                film_.add(unit);
+                counts_.splats += unit.size();
+            }
+            gather(reports);
+        }
+    }
+
+private:
+    static constexpr int tile = 16;
+    static constexpr std::uint64_t paths_per_unit = 1024, units_per_wave = 256;
+    static constexpr std::uint32_t pixel_stream = 0, path_stream = 1;
+
+    void sample_pixel(int x, int y, const auto& fn, detail::UnitReport& report) {
+        const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(width()) +
+                                  static_cast<std::size_t>(x);
+        Sampler sampler(points_, pixel_stream, pixel);
+        const Vec2 u = sampler.next_2d();
+        const Vec2 offset = filter_.kind() == Filter::Kind::box ? u - 0.5f : filter_.sample(u);
+        const Vec2 position(static_cast<float>(x) + 0.5f + offset.x, static_cast<float>(y) + 0.5f + offset.y);
+        const Camera& camera = scene_.camera();
+        const Ray ray = camera.ray(position, camera.has_lens() ? sampler.next_2d() : Vec2(0.5f));
+        const Rgb value = fn(ray, sampler);
+        if (is_finite(value)) [[likely]] {
+            film_.slot(pixel) += value;
+        } else {
+            ++report.non_finite;
+            report.where.push_back({iteration_, seed_, static_cast<std::uint32_t>(pixel)});
+        }
+    }
+
+    void gather(const std::vector<detail::UnitReport>& reports) {
+        std::vector<NonFinite> where;
+        for (const auto& report : reports) {
+            counts_.rays += report.rays;
+            counts_.shadow_rays += report.shadow_rays;
+            counts_.non_finite += report.non_finite;
+            where.insert(where.end(), report.where.begin(), report.where.end());
+        }
+        std::sort(where.begin(), where.end());
+        auto& kept = counts_.first_non_finite;
+        const std::size_t room = kept.size() < 16 ? 16 - kept.size() : 0;
+        kept.insert(kept.end(), where.begin(), where.begin() + std::ptrdiff_t(std::min(room, where.size())));
+    }
+
+    const SceneType& scene_;
+    Film& film_;
+    const E& executor_;
+    Filter filter_;
+    IterationPoints points_;
+    std::uint64_t seed_, iteration_;
+    std::stop_token stop_;
+    RenderCounts& counts_;
+};
+
+}  // namespace lightswitch

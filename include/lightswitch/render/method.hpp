@@ -1,0 +1,52 @@
+#pragma once
+
+// What a rendering method is.
+
+#include <lightswitch/core/math.hpp>
+#include <lightswitch/core/sampler.hpp>
+#include <lightswitch/scene/ray.hpp>
+
+#include <concepts>
+#include <string_view>
+
+namespace lightswitch {
+
+/// What a method promises.
+enum class Kind {
+    heuristic,   ///< a picture of the scene, not of its light transport: never compared with the others
+    consistent,  ///< the error vanishes as the work grows, but the expected value is off for any finite amount
+    unbiased,    ///< the expected value of every iteration is the exact image
+};
+
+constexpr std::string_view name(Kind kind) {
+    switch (kind) {
+    case Kind::heuristic: return "heuristic";
+    case Kind::consistent: return "consistent";
+    default: return "unbiased";
+    }
+}
+
+/// A type that says what it is: `static constexpr std::string_view name` and `static constexpr Kind kind`.
+template <class M>
+concept NamedMethod = requires {
+    { M::name } -> std::convertible_to<std::string_view>;
+    { M::kind } -> std::convertible_to<Kind>;
+};
+
+/// A method that estimates one camera ray at a time: `Rgb radiance(scene, ray, sampler) const`, the radiance that arrives at
+/// the ray's origin. Called from many threads at once on the same object.
+template <class M, class SceneType>
+concept PixelMethod =
+    NamedMethod<M> && requires(const M method, const SceneType& scene, const Ray& ray, Sampler& sampler) {
+        { method.radiance(scene, ray, sampler) } -> std::same_as<Rgb>;
+    };
+
+/// A method that estimates the whole image at once: `start(frame)` gives the state that it keeps between iterations (on one
+/// thread), and `iterate(frame, state)` makes one estimate through `frame.pixels` and `frame.paths`.
+template <class M, class FrameType>
+concept ImageMethod = NamedMethod<M> && requires(const M method, FrameType& frame) {
+    { method.start(frame) };
+    method.iterate(frame, *static_cast<decltype(method.start(frame))*>(nullptr));
+};
+
+}  // namespace lightswitch

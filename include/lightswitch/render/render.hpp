@@ -1,0 +1,187 @@
+#pragma once
+
+// The loop: iterations until the budget is spent, and nothing else.
+
+#include <lightswitch/render/frame.hpp>
+#include <lightswitch/render/method.hpp>
+
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace lightswitch {
+
+/// When to stop: at whichever limit is met first. A limit of 0 is no limit; without any, 64 samples.
+struct Budget {
+    int samples = 0;     ///< iterations, which for most methods are samples per pixel
+    double seconds = 0;  ///< of rendering; at least one iteration is made
+    double error = 0;    ///< estimated error of the image, see `Film::relative_error`; judged from 16 iterations on
+};
+
+/// What an observer is told after every iteration.
+struct Progress {
+    std::uint64_t iterations = 0;
+    double seconds = 0;       ///< spent rendering
+    double fraction = 0;      ///< of the budget that is spent, 0 to 1
+    double seconds_left = 0;  ///< estimated
+    const Film& film;
+};
+
+/// How to render; the defaults are right for most uses.
+struct Settings {
+    std::uint64_t seed = 0;
+    int threads = 0;  ///< 0: as many as the machine has
+    Sampling sampling = Sampling::sobol;
+    std::stop_token stop = {};  ///< ends the render early; whole iterations are kept
+    std::function<void(const Progress&)> observer = {};  ///< called on the rendering thread after every iteration
+};
+
+/// What a render did.
+struct RenderStatistics {
+    std::uint64_t iterations = 0;
+    double seconds = 0;  ///< rendering only, steady clock
+    int threads = 0;
+    bool cancelled = false;
+    RenderCounts counts;
+};
+
+namespace detail {
+
+/// Makes an image method of a pixel method, so that the loop knows only one kind.
+template <class M>
+struct PerPixel {
+    const M& method;
+
+    struct Nothing {};
+    Nothing start(auto&) const { return {}; }
+    void iterate(auto& frame, Nothing&) const {
+        frame.pixels([&](const Ray& ray, Sampler& sampler) { return method.radiance(frame.scene(), ray, sampler); });
+    }
+};
+
+template <class FrameType, class SceneType, class M>
+decltype(auto) as_image_method(const M& method) {
+    if constexpr (ImageMethod<M, FrameType>) {
+        return (method);
+    } else {
+        static_assert(PixelMethod<M, SceneType>,
+                      "a rendering method needs `static constexpr std::string_view name`, `static constexpr Kind kind`, and "
+                      "either `Rgb radiance(const auto& scene, const Ray&, auto& sampler) const` or "
+                      "`start(frame)` with `iterate(frame, state)`");
+        return PerPixel<M>{method};
+    }
+}
+
+}  // namespace detail
+
+/// A render that can be continued: what it has accumulated is a pure function of (scene, method, seed, sampling, number of
+/// iterations), whatever the threads and however often it was stopped in between. Scene and method must outlive it.
+template <class SceneType, class M, Executor E = TbbExecutor>
+class Session {
+public:
+    Session(const SceneType& scene, const M& method, const Settings& settings = {})
+        requires std::same_as<E, TbbExecutor>
+        : Session(scene, method, settings, TbbExecutor(settings.threads)) {}
+    Session(const SceneType& scene, const M& method, const Settings& settings, E executor)
+        : scene_(scene), method_(method), settings_(settings), executor_(std::move(executor)),
+          film_(scene.camera().width(), scene.camera().height()) {
+        statistics_.threads = executor_.threads();
+        auto first = frame();
+        state_.emplace(image_method().start(first));
+    }
+
+    /// Makes iterations until the budget is spent or the stop token asks for an end. Seconds count from this call; samples and
+    /// error concern everything accumulated so far.
+    void run(Budget budget) {
+        using Clock = std::chrono::steady_clock;
+        if (budget.samples <= 0 && budget.seconds <= 0 && budget.error <= 0) budget.samples = 64;
+        const auto begin = Clock::now();
+        const std::uint64_t already = film_.iterations();
+        while (!settings_.stop.stop_requested() && !(budget.samples > 0 && film_.iterations() >= wanted(budget))) {
+            auto current = frame();
+            image_method().iterate(current, *state_);
+            if (settings_.stop.stop_requested()) {
+                film_.discard(executor_);
+                break;
+            }
+            film_.commit(executor_);
+            statistics_.iterations = film_.iterations();
+            const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+            const double fraction = spent(budget, seconds, already);
+            if (settings_.observer) {
+                settings_.observer({.iterations = film_.iterations(),
+                                    .seconds = seconds,
+                                    .fraction = fraction,
+                                    .seconds_left = fraction > 0 ? seconds * (1 / fraction - 1) : 0,
+                                    .film = film_});
+            }
+            if (fraction >= 1) break;
+        }
+        statistics_.cancelled = settings_.stop.stop_requested();
+        statistics_.seconds += std::chrono::duration<double>(Clock::now() - begin).count();
+    }
+
+    const Film& film() const { return film_; }
+    const RenderStatistics& statistics() const { return statistics_; }
+    /// The image so far, with metadata that says how it was made.
+    Image image() const {
+        Image result = film_.image();
+        result.metadata = {{"method", std::string(M::name)},
+                           {"kind", std::string(name(M::kind))},
+                           {"scene", scene_.name()},
+                           {"camera", scene_.camera_id()},
+                           {"samples", std::to_string(film_.iterations())},
+                           {"seed", std::to_string(settings_.seed)},
+                           {"sampling", std::string(lightswitch::name(settings_.sampling))}};
+        return result;
+    }
+
+private:
+    using FrameType = Frame<SceneType, E>;
+
+    decltype(auto) image_method() const { return detail::as_image_method<FrameType, SceneType>(method_); }
+
+    FrameType frame() {
+        return {scene_, film_, executor_, scene_.film().filter, settings_.sampling, settings_.seed, film_.iterations(),
+                settings_.stop, statistics_.counts};
+    }
+
+    static std::uint64_t wanted(const Budget& budget) { return static_cast<std::uint64_t>(budget.samples); }
+
+    /// Fraction of the budget that is spent, by the limit that will be met first.
+    double spent(const Budget& budget, double seconds, std::uint64_t already) const {
+        double fraction = 0;
+        const double made = double(film_.iterations() - already);
+        if (budget.samples > 0) fraction = std::max(fraction, made / double(wanted(budget) - already));
+        if (budget.seconds > 0) fraction = std::max(fraction, seconds / budget.seconds);
+        if (budget.error > 0 && film_.iterations() >= 16) {
+            // The variance falls as one over the number of iterations.
+            const double ratio = budget.error / film_.relative_error();
+            fraction = std::max(fraction, ratio >= 1 ? 1.0 : ratio * ratio);
+        }
+        return std::min(fraction, 1.0);
+    }
+
+    const SceneType& scene_;
+    const M& method_;
+    Settings settings_;
+    E executor_;
+    Film film_;
+    RenderStatistics statistics_;
+    using State = decltype(std::declval<decltype(detail::as_image_method<FrameType, SceneType>(std::declval<const M&>()))>()
+                               .start(std::declval<FrameType&>()));
+    std::optional<State> state_;
+};
+
+/// Renders `scene` with `method` until `budget` is spent, and returns the image. Deterministic: equal arguments give equal bits,
+/// for any number of threads, unless the budget is in seconds.
+template <class SceneType, class M>
+Image render(const SceneType& scene, const M& method, const Budget& budget = {}, const Settings& settings = {}) {
+    Session<SceneType, M> session(scene, method, settings);
+    session.run(budget);
+    return session.image();
+}
+
+}  // namespace lightswitch

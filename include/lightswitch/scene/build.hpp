@@ -1,0 +1,267 @@
+#pragma once
+
+// From a description to a scene: every check, then render space, records, lights and Embree.
+
+#include <lightswitch/light/constant_environment.hpp>
+#include <lightswitch/light/directional_light.hpp>
+#include <lightswitch/light/point_light.hpp>
+#include <lightswitch/light/sphere_light.hpp>
+#include <lightswitch/light/triangle_light.hpp>
+#include <lightswitch/scene/check.hpp>
+#include <lightswitch/scene/description.hpp>
+#include <lightswitch/scene/scene.hpp>
+
+#include <chrono>
+
+namespace lightswitch {
+
+/// Every kind of light that a description can ask for.
+using AllLights = Lights<ConstantEnvironment, DirectionalLight, PointLight, SphereLight, TriangleLight>;
+
+/// How a scene is built.
+struct BuildOptions {
+    std::string embree_config;  ///< Embree's device string, for example "threads=2"
+    bool robust = false;        ///< ask Embree for watertight triangle edges (slower)
+};
+
+namespace detail {
+
+template <class BsdfList, class LightList>
+class SceneAssembly;
+
+template <class... B, class... L>
+class SceneAssembly<Bsdfs<B...>, Lights<L...>> {
+public:
+    using BuiltScene = Scene<Bsdfs<B...>, Lights<L...>>;
+
+    template <class Material>
+    BuiltScene build(const SceneDescription<Material>& description, const BuildOptions& options) {
+        const auto start = std::chrono::steady_clock::now();
+        check(description);
+        const Bounds bounds = find_bounds(description);
+        data_.name = description.name;
+        data_.film = description.film;
+        data_.space = RenderSpace(bounds.lower, bounds.upper);
+        data_.camera_id = camera_id(description.camera, description.film);
+        radius_ = glm::length(data_.space.point(bounds.upper));
+        for (const auto& material : description.materials) add(material.bsdf, material.origin);
+        for (const auto& source : description.sources) add(source.source, source.origin);
+        for (const auto& shape : description.shapes)
+            std::visit([&](const auto& geometry) { add(geometry, shape); }, shape.geometry);
+        finish_lights();
+        embree::Accelerator accelerator(options.embree_config, options.robust, positions_, indices_, spheres_);
+        auto& statistics = data_.statistics;
+        statistics.triangles = data_.triangles.size();
+        statistics.spheres = data_.spheres.size();
+        statistics.embree_bytes = accelerator.memory();
+        statistics.embree_build_seconds = accelerator.build_seconds();
+        statistics.scene_bytes = static_cast<std::int64_t>(
+            data_.triangles.size() * sizeof(TriangleRecord) + data_.spheres.size() * sizeof(SphereRecord) +
+            data_.shading_normals.size() * sizeof(data_.shading_normals[0]) +
+            ((std::get<std::vector<L>>(data_.lights).size() * sizeof(L)) + ... + 0));
+        statistics.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        Camera camera(description.camera, description.film, data_.space, radius_);
+        return {std::move(data_), std::move(camera), std::move(accelerator)};
+    }
+
+private:
+    // --- materials
+
+    template <class... M>
+    void add(const std::variant<M...>& material, const Origin& origin) {
+        std::visit([&](const auto& bsdf) { add(bsdf, origin); }, material);
+    }
+    template <Bsdf M>
+    void add(const M& bsdf, const Origin& origin) {
+        constexpr std::size_t kind = index_of<M, B...>();
+        if constexpr (kind == sizeof...(B)) {
+            fail(origin, "this scene type has no place for that surface model; add it to the scene's Bsdfs<...>");
+        } else {
+            auto& list = std::get<kind>(data_.bsdfs);
+            materials_.push_back(TypedIndex(kind, list.size()));
+            list.push_back(bsdf);
+        }
+    }
+
+    // --- lights
+
+    template <class NewLight>
+    TypedIndex add_light(const NewLight& light, const Origin& origin) {
+        constexpr std::size_t kind = index_of<NewLight, L...>();
+        if constexpr (kind == sizeof...(L)) {
+            fail(origin, "this scene type has no place for that kind of light; add it to the scene's Lights<...>");
+        } else {
+            auto& list = std::get<kind>(data_.lights);
+            if (list.size() > TypedIndex::max_position) fail(origin, "too many lights");
+            list.push_back(light);
+            return TypedIndex(kind, list.size() - 1);
+        }
+    }
+
+    void add(const Source& source, const Origin& origin) {
+        std::visit([&](const auto& s) { add(s, origin); }, source);
+    }
+    void add(const PointSource& source, const Origin& origin) {
+        // Irradiance is intensity over distance squared, and distances are multiplied by the scale.
+        const double scale2 = data_.space.scale() * data_.space.scale();
+        const PointLight light{Vec3(data_.space.point(source.position)), Rgb(DVec3(source.intensity) * scale2)};
+        pending_.push_back({add_light(light, origin), 1});
+        data_.emitters.push_back(
+            {.kind = Emitter::Kind::point, .strength = light.intensity, .position = light.position});
+    }
+    void add(const DirectionalSource& source, const Origin& origin) {
+        const DirectionalLight light{Vec3(-glm::normalize(source.direction)), source.irradiance, float(radius_)};
+        pending_.push_back({add_light(light, origin), 1});
+        data_.emitters.push_back(
+            {.kind = Emitter::Kind::directional, .strength = light.irradiance, .direction = light.towards});
+    }
+    void add(const EnvironmentSource& source, const Origin& origin) {
+        pending_.push_back({add_light(ConstantEnvironment{source.radiance, float(radius_)}, origin), 1});
+        data_.emitters.push_back({.kind = Emitter::Kind::environment, .strength = source.radiance});
+    }
+
+    void finish_lights() {
+        std::vector<double> powers;
+        (append_powers(std::get<std::vector<L>>(data_.lights), powers), ...);
+        data_.statistics.lights = powers.size();
+        double total = 0;
+        for (const double power : powers) total += power;
+        if (total > 0) data_.light_choice = DiscreteDistribution(powers);
+        // Light numbers are known only now that all lights are.
+        const std::size_t counts[] = {std::get<std::vector<L>>(data_.lights).size()..., 0};
+        for (std::size_t i = 0; i < pending_.size(); ++i) {
+            std::size_t first = pending_[i].light.position();
+            for (std::size_t kind = 0; kind < pending_[i].light.kind(); ++kind) first += counts[kind];
+            data_.emitters[i].first_light = first;
+            data_.emitters[i].light_count = pending_[i].count;
+        }
+    }
+    template <class OneLight>
+    static void append_powers(const std::vector<OneLight>& lights, std::vector<double>& powers) {
+        for (const OneLight& light : lights) powers.push_back(light.power());
+    }
+
+    // --- shapes
+
+    template <class Shape>
+    void add(const Mesh& mesh, const Shape& shape) {
+        const std::size_t base = positions_.size();
+        if (base + mesh.positions.size() > 0xffffffffu) fail(shape.origin, "too many vertices for one scene");
+        for (const DVec3& p : mesh.positions) positions_.push_back(Vec3(data_.space.point(p)));
+        Emitter emitter{.strength = shape.emission.value_or(Rgb(0))};
+        DVec3 centroid(0);
+        TypedIndex first_light;
+        for (const auto& corners : mesh.triangles) {
+            std::array<std::uint32_t, 3> index;
+            for (int i = 0; i < 3; ++i) index[i] = static_cast<std::uint32_t>(base + corners[i]);
+            const DVec3 a = positions_[index[0]], b = positions_[index[1]], c = positions_[index[2]];
+            const DVec3 cross = glm::cross(b - a, c - a);
+            const double twice_area = glm::length(cross);
+            if (!(twice_area > 0)) {  // nothing can hit it, and it has no normal
+                ++data_.statistics.degenerate_triangles;
+                continue;
+            }
+            const Vec3 normal(cross / twice_area);
+            TriangleRecord record{.corner = Vec3(a),
+                                  .offset = triangle_offset(a, b, c, twice_area),
+                                  .edge1 = Vec3(b - a),
+                                  .material = materials_[shape.material],
+                                  .edge2 = Vec3(c - a),
+                                  .light = {},
+                                  .normal = normal,
+                                  .shading_normals = TriangleRecord::flat};
+            if (!mesh.normals.empty()) {
+                record.shading_normals = static_cast<std::uint32_t>(data_.shading_normals.size());
+                data_.shading_normals.push_back({Vec3(glm::normalize(mesh.normals[corners[0]])),
+                                                 Vec3(glm::normalize(mesh.normals[corners[1]])),
+                                                 Vec3(glm::normalize(mesh.normals[corners[2]]))});
+            }
+            if (shape.emission) {
+                const double area = twice_area / 2;
+                record.light = add_light(TriangleLight{record.corner, record.edge1, record.edge2, normal, *shape.emission,
+                                                       float(area), record.offset},
+                                         shape.origin);
+                if (emitter.light_count++ == 0) first_light = record.light;
+                centroid += (a + b + c) * (area / 3);
+                emitter.vector_area += normal * float(area);
+                emitter.area += float(area);
+            }
+            data_.triangles.push_back(record);
+            indices_.push_back(index);
+        }
+        if (!shape.emission) return;
+        if (!(emitter.area > 0)) fail(shape.origin, "the light has no area");
+        emitter.position = Vec3(centroid / double(emitter.area));
+        pending_.push_back({first_light, emitter.light_count});
+        data_.emitters.push_back(emitter);
+    }
+
+    template <class Shape>
+    void add(const Sphere& sphere, const Shape& shape) {
+        const DVec3 center = data_.space.point(sphere.center);
+        const double radius = data_.space.length(sphere.radius);
+        SphereRecord record{.center = Vec3(center),
+                            .radius = float(radius),
+                            .offset = sphere_offset(center, radius),
+                            .side = sphere.inward ? -1.0f : 1.0f,
+                            .material = materials_[shape.material],
+                            .light = {}};
+        if (!(record.radius > 0)) fail(shape.origin, "the sphere is too small to be seen beside the rest of the scene");
+        if (shape.emission) {
+            record.light = add_light(SphereLight{record.center, record.radius, sphere.inward, *shape.emission, record.offset},
+                                     shape.origin);
+            pending_.push_back({record.light, 1});
+            data_.emitters.push_back({.strength = *shape.emission,
+                                      .position = record.center,
+                                      .area = 4 * pi * square(record.radius)});
+        }
+        data_.spheres.push_back(record);
+        spheres_.push_back({record.center, record.radius});
+    }
+
+    /// Bound on the distance between the point that u and v give, the plane of the triangle, and the plane as Embree's
+    /// intersection test sees it. The first term is the rounding of the interpolated position across the plane (pbrt-v4,
+    /// section 6.8.4: three products and sums of coordinates); the second the rounding of Embree's dot product of the edge
+    /// to the origin with the normal, which grows with how thin the triangle is.
+    static float triangle_offset(const DVec3& a, const DVec3& b, const DVec3& c, double twice_area) {
+        const DVec3 normal = glm::abs(glm::cross(b - a, c - a)) / twice_area;
+        const DVec3 largest = glm::max(glm::abs(a), glm::max(glm::abs(b), glm::abs(c)));
+        const double edge1 = glm::length(b - a), edge2 = glm::length(c - a);
+        const double longest = std::max(edge1, std::max(edge2, glm::length(c - b)));
+        const double thinness = std::min(edge1 * edge2 / twice_area, 16.0);
+        return static_cast<float>(double(gamma_bound(8)) * glm::dot(normal, largest) +
+                                  double(gamma_bound(4)) * longest * thinness);
+    }
+
+    /// The same for a sphere: rounding of the centre, of the projected point, and of Embree's discriminant.
+    static float sphere_offset(const DVec3& center, double radius) {
+        const DVec3 c = glm::abs(center);
+        return static_cast<float>(double(gamma_bound(8)) * (std::max(c.x, std::max(c.y, c.z)) + radius));
+    }
+
+    struct PendingEmitter {
+        TypedIndex light;
+        std::size_t count;
+    };
+
+    typename BuiltScene::Data data_;
+    double radius_ = 1;
+    std::vector<TypedIndex> materials_;
+    std::vector<PendingEmitter> pending_;
+    std::vector<Vec3> positions_;
+    std::vector<std::array<std::uint32_t, 3>> indices_;
+    std::vector<embree::Accelerator::SphereData> spheres_;
+};
+
+}  // namespace detail
+
+/// Builds a scene of the given type, for example `build_scene<Bsdfs<Lambert>, Lights<TriangleLight>>(description)`.
+///
+/// Throws `Error`, naming the place in the file if there is one, when something in the description is impossible or when the
+/// type has no room for it. Needs memory of about 100 bytes per triangle beside what Embree takes.
+template <class BsdfList, class LightList = AllLights, class Material>
+Scene<BsdfList, LightList> build_scene(const SceneDescription<Material>& description, const BuildOptions& options = {}) {
+    return detail::SceneAssembly<BsdfList, LightList>().build(description, options);
+}
+
+}  // namespace lightswitch

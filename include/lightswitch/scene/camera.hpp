@@ -1,0 +1,98 @@
+#pragma once
+
+// The camera of a built scene.
+
+#include <lightswitch/core/warp.hpp>
+#include <lightswitch/scene/description.hpp>
+#include <lightswitch/scene/ray.hpp>
+#include <lightswitch/scene/render_space.hpp>
+
+namespace lightswitch {
+
+/// A perspective camera, with a thin lens if it has an aperture, in render space. Immutable.
+///
+/// When the camera is far from the scene its rays start at the scene's bounding sphere, a point found in double precision: a
+/// float has too few digits for an origin far away.
+class Camera {
+public:
+    /// `radius` bounds the geometry around the origin of render space.
+    Camera(const CameraDescription& description, const FilmDescription& film, const RenderSpace& space, double radius)
+        : far_away_radius_(radius * 1.001), space_(space), lens_radius_(space.length(description.aperture_radius)),
+          focus_(space.length(description.focus_distance)), near_(space.length(description.near_clip)),
+          far_(space.length(description.far_clip)) {
+        const auto& m = description.to_world;
+        left_ = glm::normalize(DVec3(m[0]));
+        up_ = glm::normalize(DVec3(m[1]));
+        forward_ = glm::normalize(DVec3(m[2]));
+        position_ = space.point(DVec3(m[3]));
+        const double distance = glm::length(position_);
+        exact_ = distance > 4 * radius;
+        unclipped_ = near_ == 0 && far_ == std::numeric_limits<double>::infinity();
+        set_film(description, film);
+    }
+
+    /// The ray through `pixel` (columns and rows from the top left corner; centres at halves). `lens` in [0,1)^2 is used only
+    /// by a camera with an aperture.
+    Ray ray(const Vec2& pixel, const Vec2& lens) const {
+        if (exact_ || lens_radius_ > 0 || !unclipped_) return general_ray(pixel, lens);
+        return {.origin = origin_, .direction = normalize(corner_ + pixel.x * step_x_ + pixel.y * step_y_)};
+    }
+
+    bool has_lens() const { return lens_radius_ > 0; }
+    int width() const { return width_; }
+    int height() const { return height_; }
+
+private:
+    void set_film(const CameraDescription& description, const FilmDescription& film) {
+        width_ = film.width;
+        height_ = film.height;
+        const double aspect = static_cast<double>(film.width) / film.height;
+        const double tangent = std::tan(glm::radians(description.fov) / 2);
+        using Axis = CameraDescription::FovAxis;
+        const bool along_x = description.fov_axis == Axis::x ||
+                             (description.fov_axis == Axis::larger && aspect > 1) ||
+                             (description.fov_axis == Axis::smaller && aspect <= 1);
+        double half_width = along_x ? tangent : tangent * aspect;
+        if (description.fov_axis == Axis::diagonal) half_width = tangent / std::sqrt(1 + 1 / (aspect * aspect));
+        const double half_height = half_width / aspect;
+        corner_exact_ = forward_ + half_width * left_ + half_height * up_;
+        step_x_exact_ = left_ * (-2 * half_width / film.width);
+        step_y_exact_ = up_ * (-2 * half_height / film.height);
+        corner_ = Vec3(corner_exact_);
+        step_x_ = Vec3(step_x_exact_);
+        step_y_ = Vec3(step_y_exact_);
+        origin_ = Vec3(position_);
+    }
+
+    Ray general_ray(const Vec2& pixel, const Vec2& lens) const {
+        // Per unit along the optical axis.
+        DVec3 along = corner_exact_ + double(pixel.x) * step_x_exact_ + double(pixel.y) * step_y_exact_;
+        DVec3 origin = position_;
+        if (lens_radius_ > 0) {
+            const Vec2 on_lens = concentric_disk(lens);
+            const DVec3 shift = lens_radius_ * (double(on_lens.x) * left_ + double(on_lens.y) * up_);
+            origin += shift;
+            along -= shift / focus_;
+        }
+        const double per_axis = glm::length(along);
+        const DVec3 direction = along / per_axis;
+        double near = near_ * per_axis;
+        const double far = far_ * per_axis;
+        if (exact_) near = std::max(near, glm::length(origin) - far_away_radius_);
+        const double length = far - near;
+        return {.origin = Vec3(origin + near * direction),
+                .direction = Vec3(direction),
+                .near = 0,
+                .far = length > 0 ? static_cast<float>(length) : 0.0f};
+    }
+
+    Vec3 origin_, corner_, step_x_, step_y_;
+    bool exact_ = false, unclipped_ = true;
+    int width_ = 0, height_ = 0;
+    double far_away_radius_;
+    RenderSpace space_;
+    DVec3 position_, left_, up_, forward_, corner_exact_, step_x_exact_, step_y_exact_;
+    double lens_radius_, focus_, near_, far_;
+};
+
+}  // namespace lightswitch

@@ -1,0 +1,102 @@
+#pragma once
+
+// Triangle meshes as the user describes them: double precision, world space.
+
+#include <lightswitch/core/math.hpp>
+
+#include <array>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace lightswitch {
+
+/// A triangle mesh. Seen from its front, a triangle's corners run counter-clockwise.
+struct Mesh {
+    std::vector<DVec3> positions;                         ///< in scene units
+    std::vector<DVec3> normals;                           ///< one per position, any length but 0; empty for flat triangles
+    std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices into `positions`
+
+    /// The mesh under an affine, invertible `matrix`; normals follow the inverse transpose, and a reflection leaves the front
+    /// where the transformed normals point (it also swaps the winding, so that front and normals stay together).
+    Mesh transformed(const DMat4& matrix) const;
+    /// The mesh with front and back exchanged.
+    Mesh flipped() const;
+    /// Replaces the normals by angle-weighted averages over the triangles around each position (Thuermer and Wuethrich,
+    /// "Computing Vertex Normals from Polygonal Facets", JGT 1998), as Mitsuba does. Triangles without area do not count; a
+    /// position without any other triangle gets (1, 0, 0).
+    void smooth();
+    /// Turns each triangle whose normals on the whole point to its back, so that the normals decide which side is the front.
+    void face_along_normals();
+
+private:
+    /// Normal of a triangle by its winding, not normalized: its length is twice the area.
+    DVec3 area_normal(const std::array<std::uint32_t, 3>& t) const;
+};
+
+/// Determinant of the linear part of an affine matrix: negative for a reflection.
+double linear_determinant(const DMat4& matrix);
+
+inline double linear_determinant(const DMat4& matrix) {
+    return glm::dot(DVec3(matrix[0]), glm::cross(DVec3(matrix[1]), DVec3(matrix[2])));
+}
+
+inline Mesh Mesh::transformed(const DMat4& matrix) const {
+    Mesh result = *this;
+    for (DVec3& p : result.positions) p = DVec3(matrix * glm::dvec4(p, 1.0));
+
+    // The inverse transpose up to a positive factor, by columns. The scale is taken out first, against underflow.
+    double scale = 0;
+    for (int c = 0; c < 3; ++c)
+        for (int r = 0; r < 3; ++r) scale = std::max(scale, std::abs(matrix[c][r]));
+    const DVec3 x = DVec3(matrix[0]) / scale, y = DVec3(matrix[1]) / scale, z = DVec3(matrix[2]) / scale;
+    const bool reflection = glm::dot(x, glm::cross(y, z)) < 0;
+    const double sign = reflection ? -1 : 1;
+    const DVec3 nx = sign * glm::cross(y, z), ny = sign * glm::cross(z, x), nz = sign * glm::cross(x, y);
+    for (DVec3& n : result.normals) {
+        const DVec3 turned = n.x * nx + n.y * ny + n.z * nz;
+        n = turned / glm::length(turned);
+    }
+
+    if (reflection)
+        for (auto& t : result.triangles) std::swap(t[1], t[2]);
+    return result;
+}
+
+inline Mesh Mesh::flipped() const {
+    Mesh result = *this;
+    for (DVec3& n : result.normals) n = -n;
+    for (auto& t : result.triangles) std::swap(t[1], t[2]);
+    return result;
+}
+
+inline DVec3 Mesh::area_normal(const std::array<std::uint32_t, 3>& t) const {
+    return glm::cross(positions[t[1]] - positions[t[0]], positions[t[2]] - positions[t[0]]);
+}
+
+inline void Mesh::smooth() {
+    normals.assign(positions.size(), DVec3(0));
+    for (const auto& t : triangles) {
+        const DVec3 normal = area_normal(t);
+        const double length = glm::length(normal);
+        if (!(length > 0)) continue;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const DVec3 a = positions[t[(i + 1) % 3]] - positions[t[i]];
+            const DVec3 b = positions[t[(i + 2) % 3]] - positions[t[i]];
+            // The length of the cross product is the same at all three corners; atan2 is exact for thin triangles too.
+            normals[t[i]] += normal / length * std::atan2(length, glm::dot(a, b));
+        }
+    }
+    for (DVec3& n : normals) {
+        const double length = glm::length(n);
+        n = length > 0 ? n / length : DVec3(1, 0, 0);
+    }
+}
+
+inline void Mesh::face_along_normals() {
+    if (normals.empty()) return;
+    for (auto& t : triangles)
+        if (glm::dot(area_normal(t), normals[t[0]] + normals[t[1]] + normals[t[2]]) < 0) std::swap(t[1], t[2]);
+}
+
+}  // namespace lightswitch

@@ -1,0 +1,278 @@
+#pragma once
+
+// The built scene: what rays meet, what surfaces are made of, and what shines. Its type says which surface models and which
+// lights it can hold, so that code is compiled only for what is there.
+
+#include <lightswitch/bsdf/bsdf.hpp>
+#include <lightswitch/core/dispatch.hpp>
+#include <lightswitch/core/table.hpp>
+#include <lightswitch/embree/accelerator.hpp>
+#include <lightswitch/light/light.hpp>
+#include <lightswitch/scene/camera.hpp>
+#include <lightswitch/scene/surface_point.hpp>
+
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace lightswitch {
+
+/// The surface models of a scene.
+template <Bsdf... B>
+struct Bsdfs {};
+/// The kinds of light of a scene.
+template <Light... L>
+struct Lights {};
+
+/// One luminous shape or source, summed up for methods that treat it as one light.
+struct Emitter {
+    enum class Kind { environment, directional, point, surface };
+
+    Kind kind = Kind::surface;
+    Rgb strength{0};       ///< radiance; of a point its intensity (render space), of a directional source its irradiance
+    Vec3 position{0};      ///< point, or centroid of a surface (render space)
+    Vec3 direction{0};     ///< unit, towards a directional source
+    Vec3 vector_area{0};   ///< of a surface: sum of normal * area (render space)
+    float area = 0;        ///< of a surface
+    std::size_t first_light = 0, light_count = 0;  ///< numbers of the lights that belong to it
+};
+
+/// What a scene is made of, in numbers.
+struct SceneStatistics {
+    std::size_t triangles = 0, spheres = 0, lights = 0, degenerate_triangles = 0;
+    std::int64_t embree_bytes = 0, scene_bytes = 0;
+    double embree_build_seconds = 0, build_seconds = 0;
+};
+
+namespace detail {
+
+/// All that a ray needs to know about the triangle that it hit: one cache line.
+struct alignas(64) TriangleRecord {
+    Vec3 corner;
+    float offset;
+    Vec3 edge1;
+    TypedIndex material;
+    Vec3 edge2;
+    TypedIndex light;
+    Vec3 normal;
+    std::uint32_t shading_normals;  ///< index of three normals, or `flat`
+    static constexpr std::uint32_t flat = 0xffffffffu;
+};
+
+struct SphereRecord {
+    Vec3 center;
+    float radius;
+    float offset;
+    float side;  ///< +1 when the front is outside, -1 when inside
+    TypedIndex material;
+    TypedIndex light;
+};
+
+template <class B, class L>
+struct SceneData;
+
+template <class... B, class... L>
+struct SceneData<Bsdfs<B...>, Lights<L...>> {
+    std::string name;
+    std::string camera_id;
+    RenderSpace space;
+    FilmDescription film;
+    std::vector<TriangleRecord> triangles;
+    std::vector<std::array<Vec3, 3>> shading_normals;
+    std::vector<SphereRecord> spheres;
+    std::tuple<std::vector<B>...> bsdfs;
+    std::tuple<std::vector<L>...> lights;
+    DiscreteDistribution light_choice;  ///< over light numbers, see `Scene::light_number`
+    std::vector<Emitter> emitters;
+    SceneStatistics statistics;
+};
+
+}  // namespace detail
+
+template <class BsdfList, class LightList>
+class Scene;
+
+/// An immutable scene; see `build_scene` for how to make one. All members are safe to call from several threads.
+///
+/// Positions and distances that it takes and gives are in render space (`RenderSpace`); `length` converts the user's units.
+template <class... B, class... L>
+class Scene<Bsdfs<B...>, Lights<L...>> {
+public:
+    using Data = detail::SceneData<Bsdfs<B...>, Lights<L...>>;
+    static constexpr bool has_environment = (EnvironmentLight<L> || ...);
+
+    Scene(Data data, Camera camera, embree::Accelerator accelerator)
+        : data_(std::move(data)), camera_(std::move(camera)), accelerator_(std::move(accelerator)) {}
+
+    // --- rays
+
+    /// The closest surface along `ray`, or nothing.
+    std::optional<SurfacePoint> intersect(const Ray& ray) const {
+        embree::Hit hit;
+        if (!accelerator_.intersect(ray, hit)) return std::nullopt;
+        if (hit.geometry == embree::Accelerator::triangle_geometry) [[likely]]
+            return triangle_point(hit);
+        return sphere_point(ray, hit);
+    }
+
+    /// Whether any surface lies on the ray between `near` and `far`.
+    bool occluded(const Ray& ray) const { return accelerator_.occluded(ray); }
+
+    // --- surfaces
+
+    /// Calls `f(bsdf)` with the surface model at `point`, as its concrete type, and returns what it returns.
+    template <class F>
+    decltype(auto) with_bsdf(const SurfacePoint& point, F&& f) const {
+        return dispatch<sizeof...(B)>(point.material.kind(), [&](auto kind) -> decltype(auto) {
+            return f(std::get<kind>(data_.bsdfs)[point.material.position()]);
+        });
+    }
+
+    // --- lights
+
+    /// Radiance that the surface at `point` emits along `direction` (unit, away from the surface).
+    Rgb emitted(const SurfacePoint& point, const Vec3& direction) const {
+        if (!point.light) return Rgb(0);
+        return with_light(point.light, [&](const auto& light) {
+            if constexpr (is_area<decltype(light)>)
+                return light.emitted(point, direction);
+            else
+                return Rgb(0);
+        });
+    }
+
+    /// Radiance that arrives from beyond the scene out of `direction`.
+    Rgb environment(const Vec3& direction) const {
+        Rgb sum(0);
+        for_each_environment([&](std::size_t, const auto& light) { sum += light.radiance(direction); });
+        return sum;
+    }
+
+    /// A direction towards a light that `choice` in [0, 1) selects by power and on which `u` selects a place; the density
+    /// includes the selection. Black when there is no light.
+    LightSample sample_light(const SurfacePoint& from, float choice, const Vec2& u) const {
+        if (data_.light_choice.empty()) return {};
+        const std::size_t number = data_.light_choice.sample(choice);
+        LightSample sample = with_light(locate(number), [&](const auto& light) { return light.sample(from, u); });
+        sample.pdf = sample.pdf * data_.light_choice.probability(number);
+        return sample;
+    }
+
+    /// The density with which `sample_light` at `from` chooses the direction `wi` to `hit`, a point on a light.
+    SolidAnglePdf light_pdf(const SurfacePoint& from, const Vec3& wi, const SurfacePoint& hit) const {
+        const SolidAnglePdf pdf = with_light(hit.light, [&](const auto& light) {
+            if constexpr (is_area<decltype(light)>)
+                return light.pdf(from, wi, hit);
+            else
+                return SolidAnglePdf{};
+        });
+        return pdf * data_.light_choice.probability(light_number(hit.light));
+    }
+
+    /// The density with which `sample_light` at `from` chooses the direction `wi` through the environment.
+    SolidAnglePdf environment_pdf(const SurfacePoint& from, const Vec3& wi) const {
+        SolidAnglePdf sum;
+        for_each_environment([&](std::size_t number, const auto& light) {
+            sum.value += light.pdf(from, wi).value * data_.light_choice.probability(number);
+        });
+        return sum;
+    }
+
+    /// Lights are numbered by kind in the order of the list, then by position.
+    std::size_t light_number(TypedIndex light) const { return first_light_[light.kind()] + light.position(); }
+    std::size_t light_count() const { return first_light_[sizeof...(L)]; }
+
+    /// Calls `f(light)` with that light as its concrete type, and returns what it returns.
+    template <class F>
+    decltype(auto) with_light(TypedIndex light, F&& f) const {
+        return dispatch<sizeof...(L)>(light.kind(), [&](auto kind) -> decltype(auto) {
+            return f(std::get<kind>(data_.lights)[light.position()]);
+        });
+    }
+
+    /// The luminous shapes and sources, one entry each.
+    const std::vector<Emitter>& emitters() const { return data_.emitters; }
+
+    // --- the rest
+
+    const Camera& camera() const { return camera_; }
+    const FilmDescription& film() const { return data_.film; }
+    const std::string& name() const { return data_.name; }
+    /// A short text that differs between different cameras, for telling apart images of one scene.
+    const std::string& camera_id() const { return data_.camera_id; }
+    /// Scene units to render units.
+    float length(double scene_units) const { return static_cast<float>(data_.space.length(scene_units)); }
+    const RenderSpace& space() const { return data_.space; }
+    const SceneStatistics& statistics() const { return data_.statistics; }
+
+private:
+    SurfacePoint triangle_point(const embree::Hit& hit) const {
+        const detail::TriangleRecord& t = data_.triangles[hit.primitive];
+        SurfacePoint point{.position = t.corner + hit.u * t.edge1 + hit.v * t.edge2,
+                           .normal = t.normal,
+                           .shading_normal = t.normal,
+                           .offset = t.offset,
+                           .distance = hit.distance,
+                           .material = t.material,
+                           .light = t.light};
+        if (t.shading_normals != detail::TriangleRecord::flat) {
+            const auto& n = data_.shading_normals[t.shading_normals];
+            const Vec3 sum = (1 - hit.u - hit.v) * n[0] + hit.u * n[1] + hit.v * n[2];
+            const float length2 = length_squared(sum);
+            if (length2 > 0) point.shading_normal = sum * (1 / std::sqrt(length2));
+        }
+        return point;
+    }
+
+    SurfacePoint sphere_point(const Ray& ray, const embree::Hit& hit) const {
+        const detail::SphereRecord& s = data_.spheres[hit.primitive];
+        // Projected back onto the sphere, where the error no longer depends on how far the ray came.
+        const Vec3 outward = normalize(ray.origin + hit.distance * ray.direction - s.center);
+        return {.position = s.center + s.radius * outward,
+                .normal = s.side * outward,
+                .shading_normal = s.side * outward,
+                .offset = s.offset,
+                .distance = hit.distance,
+                .material = s.material,
+                .light = s.light};
+    }
+
+    template <class T>
+    static constexpr bool is_area = AreaLight<std::remove_cvref_t<T>>;
+
+    template <class F>
+    void for_each_environment([[maybe_unused]] F&& f) const {
+        [&]<std::size_t... I>(std::index_sequence<I...>) {
+            (visit_environments<I>(f), ...);
+        }(std::index_sequence_for<L...>{});
+    }
+
+    template <std::size_t I, class F>
+    void visit_environments([[maybe_unused]] F& f) const {
+        if constexpr (EnvironmentLight<std::tuple_element_t<I, std::tuple<L...>>>) {
+            const auto& lights = std::get<I>(data_.lights);
+            for (std::size_t i = 0; i < lights.size(); ++i) f(first_light_[I] + i, lights[i]);
+        }
+    }
+
+    TypedIndex locate(std::size_t number) const {
+        std::size_t kind = 0;
+        while (number >= first_light_[kind + 1]) ++kind;
+        return {kind, number - first_light_[kind]};
+    }
+
+    std::array<std::size_t, sizeof...(L) + 1> count_lights() const {
+        std::array<std::size_t, sizeof...(L) + 1> first{};
+        [[maybe_unused]] std::size_t kind = 0;
+        ((first[kind + 1] = first[kind] + std::get<std::vector<L>>(data_.lights).size(), ++kind), ...);
+        return first;
+    }
+
+    Data data_;
+    Camera camera_;
+    embree::Accelerator accelerator_;
+    std::array<std::size_t, sizeof...(L) + 1> first_light_ = count_lights();
+};
+
+}  // namespace lightswitch

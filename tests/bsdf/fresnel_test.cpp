@@ -1,0 +1,99 @@
+#include <lightswitch/bsdf/fresnel.hpp>
+
+#include <doctest/doctest.h>
+
+using namespace lightswitch;
+
+// Reference values: Mitsuba 3, `mi.fresnel` and `mi.fresnel_conductor` (scalar_rgb).
+
+TEST_CASE("fresnel: dielectric values agree with Mitsuba's") {
+    const struct {
+        float eta, cos_i, reflectance, cos_t;
+    } table[] = {
+        {1.5f, 1, 0.0400000f, -1},          {1.5f, 0.6f, 0.0645250f, -0.8459052f},  {1.5f, 0.1f, 0.5715926f, -0.7483314f},
+        {1.5f, -1, 0.0400000f, 1},          {1.5f, -0.9f, 0.0463326f, 0.7566373f},  {1.5f, -0.6f, 1, 0},
+        {1.33f, 0.6f, 0.0386962f, -0.7988700f}, {1.33f, -0.9f, 0.0223328f, 0.8148060f}, {2.4f, 1, 0.1695502f, -1},
+        {2.4f, 0.1f, 0.5859887f, -0.9100137f},  {2.4f, -0.9f, 1, 0},                {0.3f, 1, 0.2899409f, -1},
+        {0.3f, 0.6f, 1, 0},                 {0.3f, -0.9f, 0.2901585f, 0.9914131f},  {0.3f, -0.6f, 0.2961132f, 0.9707729f},
+    };
+    for (const auto& row : table) {
+        CAPTURE(row.eta);
+        CAPTURE(row.cos_i);
+        const auto f = fresnel_dielectric(row.cos_i, row.eta);
+        CHECK(std::abs(f.reflectance - row.reflectance) < 1e-6f);
+        CHECK(std::abs(f.cos_t - row.cos_t) < 1e-6f);
+        CHECK(f.eta == doctest::Approx(row.cos_i > 0 ? row.eta : 1 / row.eta));
+    }
+}
+
+TEST_CASE("fresnel: dielectric limits") {
+    for (const float eta : {1.0001f, 1.33f, 1.5f, 2.4f, 0.4f, 0.99f}) {
+        CAPTURE(eta);
+        CHECK(fresnel_dielectric(1, eta).reflectance == doctest::Approx(square((eta - 1) / (eta + 1))).epsilon(1e-4));
+        CHECK(fresnel_dielectric(1e-7f, eta).reflectance == doctest::Approx(1).epsilon(1e-4));
+        // Brewster's angle, tan = eta: only the perpendicular part is reflected.
+        const float brewster = 1 / std::sqrt(1 + eta * eta);
+        CHECK(fresnel_dielectric(brewster, eta).reflectance ==
+              doctest::Approx(0.5f * square((1 - eta * eta) / (1 + eta * eta))).epsilon(1e-3));
+        // What enters along one side leaves along the other with the same transmittance.
+        const auto in = fresnel_dielectric(0.95f, eta);
+        if (in.cos_t != 0) {
+            const auto out = fresnel_dielectric(in.cos_t, eta);
+            CHECK(out.reflectance == doctest::Approx(in.reflectance).epsilon(1e-4));
+            CHECK(out.cos_t == doctest::Approx(0.95f));
+        }
+    }
+    // The critical angle: sin = 1 / eta from inside.
+    const double critical = std::sqrt(1 - 1 / (1.5 * 1.5));
+    CHECK(fresnel_dielectric(static_cast<float>(-critical * 0.9999), 1.5f).reflectance == 1);
+    CHECK(fresnel_dielectric(static_cast<float>(-critical * 1.0001), 1.5f).reflectance < 0.95f);
+    // Equal media: nothing happens.
+    for (const float c : {1.0f, 0.3f, 1e-7f, -1e-3f}) {
+        CHECK(fresnel_dielectric(c, 1).reflectance == 0);
+        CHECK(fresnel_dielectric(c, 1).cos_t == -c);
+    }
+}
+
+TEST_CASE("fresnel: conductor values agree with Mitsuba's") {
+    const struct {
+        float eta, k, cos_i, reflectance;
+    } table[] = {
+        {0.2f, 3.9f, 1, 0.9519520f},     {0.2f, 3.9f, 0.5f, 0.9458821f},     {0.2f, 3.9f, 0.1f, 0.9628965f},
+        {3.1f, 3.3f, 1, 0.5523466f},     {3.1f, 3.3f, 0.5f, 0.5318714f},     {3.1f, 3.3f, 0.1f, 0.6264175f},
+        {1.5f, 0, 1, 0.0400000f},        {1.5f, 0, 0.5f, 0.0891867f},        {1.5f, 0, 0.1f, 0.5715925f},
+        {0.143f, 3.98f, 1, 0.9666409f},  {0.143f, 3.98f, 0.5f, 0.9621721f},  {0.143f, 3.98f, 0.1f, 0.9734334f},
+        {0.05f, 4.3f, 1, 0.9897929f},    {0.05f, 4.3f, 0.5f, 0.9882227f},    {0.05f, 4.3f, 0.1f, 0.9908670f},
+    };
+    for (const auto& row : table) {
+        CAPTURE(row.eta);
+        CAPTURE(row.cos_i);
+        CHECK(std::abs(fresnel_conductor(row.cos_i, row.eta, row.k) - row.reflectance) < 1e-6f);
+    }
+}
+
+TEST_CASE("fresnel: conductor limits") {
+    for (const float c : {1.0f, 0.7f, 0.01f, 1e-7f, 0.0f}) {
+        CAPTURE(c);
+        CHECK(fresnel_conductor(c, 0, 1) == 1);  // the ideal mirror, exactly
+        CHECK(fresnel_conductor(c, 1.5f, 0) == doctest::Approx(fresnel_dielectric(c, 1.5f).reflectance).epsilon(1e-5));
+    }
+    CHECK(fresnel_conductor(0.5f, 1, 0) == 0);  // no boundary at all
+    int bad = 0;
+    for (const float eta : {0.0f, 1e-4f, 0.1f, 0.9f, 1.0f, 3.0f, 1e3f, 1e8f})
+        for (const float k : {0.0f, 1e-4f, 0.1f, 1.0f, 5.0f, 1e3f, 1e8f})
+            for (int i = 0; i <= 100; ++i) {
+                const float f = fresnel_conductor(0.01f * static_cast<float>(i), eta, k);
+                if ((eta != 0 || k != 0) && !(f >= 0 && f <= 1)) ++bad;
+            }
+    CHECK(bad == 0);
+}
+
+TEST_CASE("fresnel: impossible indices are explained") {
+    CHECK(conductor_problem(Rgb(0), Rgb(1)) == "");
+    CHECK(conductor_problem(Rgb(1.5f), Rgb(0)) == "");
+    CHECK(conductor_problem(Rgb(1, -1, 1), Rgb(1)).find("eta has a component of -1") == 0);
+    CHECK(conductor_problem(Rgb(1), Rgb(1, 1, -0.5f)).find("k has a component of -0.5") == 0);
+    CHECK(conductor_problem(Rgb(1, 1, NAN), Rgb(1)) != "");
+    CHECK(conductor_problem(Rgb(1), Rgb(infinity)) != "");
+    CHECK(conductor_problem(Rgb(1, 0, 1), Rgb(1, 0, 1)).find("both 0") != std::string::npos);
+}

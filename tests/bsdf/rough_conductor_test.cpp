@@ -1,0 +1,148 @@
+#include <lightswitch/bsdf/rough_conductor.hpp>
+#include <lightswitch/bsdf/two_sided.hpp>
+
+#include "bsdf_checks.hpp"
+
+using namespace lightswitch;
+using test::direction;
+
+static_assert(Bsdf<RoughConductor> && Bsdf<TwoSided<RoughConductor>>);
+
+namespace {
+
+RoughConductor metal(float alpha) {
+    return {.alpha = alpha, .eta = {0.2f, 0.92f, 1.1f}, .k = {3.9f, 2.45f, 2.14f}, .reflectance = {0.9f, 0.8f, 0.7f}};
+}
+
+constexpr float alphas[] = {0.02f, 0.1f, 0.3f, 1};
+constexpr double cosines[] = {1, 0.85, 0.4, 0.1, 0.01};
+const double level = test::sidak(1e-6, 4 * 5 + 2 + 8);
+
+}  // namespace
+
+TEST_CASE("rough conductor: values and densities agree with Mitsuba's") {
+    // Mitsuba 3 (scalar_rgb), roughconductor, ggx, specular_reflectance 0.9 0.8 0.7: eval includes the cosine.
+    const struct {
+        float alpha;
+        Vec3 wo, wi;
+        Rgb eval;
+        float pdf;
+    } table[] = {
+        {0.001f, {0.483580083f, 0.0565183982f, 0.873473525f}, {-0.485831022f, -0.0564822778f, 0.872225881f},
+         {11002.6602f, 6371.74512f, 4595.92969f}, 12846.626f},
+        {0.02f, {0.717006385f, -0.692972302f, 0.075439781f}, {-0.7168414f, 0.694677234f, 0.0596821047f},
+         {1125.14331f, 896.187622f, 760.257141f}, 1319.88269f},
+        {0.02f, {-0.849748731f, -0.442132264f, 0.287134409f}, {0.955817759f, -0.0733603612f, 0.284658909f},
+         {0.000445914367f, 0.000269249751f, 0.000204522847f}, 0.000525944226f},
+        {0.02f, {-0.738772452f, 0.25094521f, 0.625493228f}, {0.712163925f, -0.240069896f, 0.659688532f},
+         {53.6673431f, 31.1957321f, 22.7746143f}, 62.8423195f},
+        {0.1f, {-0.451820582f, 0.532039225f, 0.716095269f}, {0.337950438f, -0.404790908f, 0.849666893f},
+         {2.02501464f, 1.17314792f, 0.848511815f}, 2.36824059f},
+        {0.1f, {0.681962967f, -0.558103859f, 0.472701371f}, {0.325997263f, 0.945234179f, 0.0160675198f},
+         {0.00056392292f, 0.0003287367f, 0.000241209142f}, 0.00241329009f},
+        {1, {-0.752863288f, 0.549411774f, 0.362413526f}, {-0.186249435f, 0.878978431f, 0.438985258f},
+         {0.0610611178f, 0.0353600457f, 0.0254767388f}, 0.116818398f},
+        {1, {-0.757845938f, 0.610261977f, 0.230759203f}, {0.894080877f, -0.122380272f, 0.430862486f},
+         {0.0661489889f, 0.0396095887f, 0.0298965815f}, 0.129314467f},
+    };
+    for (const auto& row : table) {
+        CAPTURE(row.alpha);
+        CAPTURE(row.pdf);
+        const BsdfValue v = metal(row.alpha).evaluate(row.wo, row.wi, Transport::radiance);
+        for (int c = 0; c < 3; ++c) CHECK(v.value[c] * row.wi.z == doctest::Approx(row.eval[c]).epsilon(1e-5));
+        CHECK(v.pdf.value == doctest::Approx(row.pdf).epsilon(1e-5));
+    }
+}
+
+TEST_CASE("rough conductor: sampling follows the density") {
+    std::uint32_t seed = 1;
+    for (const float alpha : alphas)
+        for (const double cosine : cosines) test::check_density(metal(alpha), direction(cosine), double(alpha), level, seed++);
+    test::check_density(metal(0.001f), direction(1), 0.001, level, seed++);
+    test::check_density(metal(0.001f), direction(0.5), 0.001, level, seed++);
+}
+
+TEST_CASE("rough conductor: sampling follows the density on the back of a two-sided surface") {
+    std::uint32_t seed = 101;
+    for (const float alpha : alphas)
+        for (const double cosine : {-0.7, -0.05})
+            test::check_density(TwoSided<RoughConductor>{metal(alpha)}, direction(cosine), double(alpha), level, seed++);
+}
+
+TEST_CASE("rough conductor: a density without the Jacobian of reflection, or without masking, is found") {
+    const RoughConductor m = metal(0.3f);
+    const Vec3 wo = direction(0.4);
+    const auto sample = [&](const Vec3& u) -> std::optional<Vec3> {
+        const auto s = m.sample(wo, u, Transport::radiance);
+        return s ? std::optional(s->wi) : std::nullopt;
+    };
+    const auto p_value = [&](const auto& factor) {
+        const auto pdf = [&](const Vec3& wi) {
+            return double(m.evaluate(wo, wi, Transport::radiance).pdf.value) * factor(normalize(wo + wi));
+        };
+        return test::chi_square_sphere(sample, pdf, test::cells_for(wo, 0.3), 200000, 1).chi_square.p_value;
+    };
+    CHECK(p_value([](const Vec3&) { return 1.0; }) > 1e-6);
+    CHECK(p_value([&](const Vec3& half) { return 4 * double(dot(wo, half)); }) < 1e-12);
+    CHECK(p_value([&](const Vec3&) { return double(Ggx(0.3f).smith_denominator(wo.z) / (2 * wo.z)); }) < 1e-12);
+}
+
+TEST_CASE("rough conductor: energy") {
+    std::uint32_t seed = 201;
+    for (const float alpha : alphas)
+        for (const double cosine : cosines) {
+            test::check_albedo(metal(alpha), direction(cosine), double(alpha), seed++);
+            // The ideal metal loses only what single scattering loses: little when smooth, about half at worst.
+            const double white = test::check_albedo(RoughConductor{.alpha = alpha}, direction(cosine), double(alpha), seed++);
+            CHECK(white > 0.45);
+            if (alpha < 0.05f && cosine > 0.3) CHECK(white > 0.995);
+        }
+}
+
+TEST_CASE("rough conductor: a sample's weight and density are those of evaluate, down to the smoothest") {
+    for (const float alpha : alphas)
+        for (const double cosine : cosines) test::check_sample_agrees_with_evaluate(metal(alpha), direction(cosine), 1e-4, 2e-3);
+    // The half vector is known to a few units of roundoff, which count in units of alpha.
+    test::check_sample_agrees_with_evaluate(metal(0.005f), direction(0.7), 1e-4, 1e-3);
+    test::check_sample_agrees_with_evaluate(metal(0.001f), direction(0.7), 1e-4, 5e-3);
+    test::check_sample_agrees_with_evaluate(metal(0.0001f), direction(0.7), 1e-4, 5e-2);
+}
+
+TEST_CASE("rough conductor: reciprocity") {
+    for (const float alpha : alphas) {
+        test::check_reciprocity(metal(alpha));
+        test::check_reciprocity(TwoSided<RoughConductor>{metal(alpha)});
+    }
+}
+
+TEST_CASE("rough conductor: approaches the mirror") {
+    const Vec3 wo = direction(0.6);
+    test::Random random(4);
+    for (int i = 0; i < 1000; ++i) {
+        const auto s = metal(0.0001f).sample(wo, random.next_3d(), Transport::radiance);
+        if (!s) continue;
+        CHECK(s->weight.x == doctest::Approx(0.9f * fresnel_conductor(0.6f, 0.2f, 3.9f)).epsilon(1e-2));
+    }
+}
+
+TEST_CASE("rough conductor: extremes") {
+    for (const float alpha : {1e-6f, 1e-4f, 0.001f, 0.005f, 0.1f, 1.0f}) {
+        CAPTURE(alpha);
+        test::check_extremes(RoughConductor{.alpha = alpha});
+    }
+    test::check_extremes(TwoSided<RoughConductor>{metal(0.05f)}, 0.9f);
+}
+
+TEST_CASE("rough conductor: impossible parameters are explained") {
+    CHECK(metal(1).problem() == "");
+    for (const float alpha : {0.0f, -0.1f, 1.1f, infinity, NAN}) CHECK(metal(alpha).problem().find("alpha is") == 0);
+    CHECK(RoughConductor{.k = Rgb(-1)}.problem().find("k has") == 0);
+    CHECK(RoughConductor{.reflectance = Rgb(NAN)}.problem().find("reflectance has") == 0);
+}
+
+TEST_CASE("rough conductor: Phong terms") {
+    CHECK(metal(0.1f).phong().shininess == doctest::Approx(198));
+    CHECK(metal(1).phong().shininess == 1);
+    CHECK(metal(0.0001f).phong().shininess == 1000);
+    CHECK(RoughConductor{}.phong().specular == Rgb(1));
+}
