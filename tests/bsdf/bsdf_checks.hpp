@@ -2,17 +2,17 @@
 
 // What every surface model must satisfy, written once.
 //
-// False alarms, for seeds drawn at random (they are fixed): a chi-square test gives one with probability `level`, which each
-// file sets so that all of its tests together stay at 1e-6; a comparison of means allows 6 standard errors, 2e-9.
+// False alarms, for seeds drawn at random (they are fixed): a chi-square test gives one with probability `level`, which
+// each file sets so that all of its tests together stay at 1e-6; a comparison of means allows 6 standard errors, 2e-9.
 
 #include <lightswitch/bsdf/bsdf.hpp>
+#include <lightswitch/core/warp.hpp>
 
 #include "../support/chi_square.hpp"
 
 #include <doctest/doctest.h>
 
-#include <string>
-#include <vector>
+#include <optional>
 
 namespace lightswitch::test {
 
@@ -24,8 +24,10 @@ inline Vec3 direction(double cosine, double phi = 0.7) {
 
 inline Vec3 mirrored(const Vec3& w) { return {-w.x, -w.y, w.z}; }
 
-/// Cells around the mirror direction, finer there for a lobe of the roughness `alpha`.
+/// Cells for a lobe of the roughness `alpha`: finer around the mirror direction when it is narrow, else around the
+/// normal, with the horizon, where densities jump, between two rings.
 inline SphereCells cells_for(const Vec3& wo, double alpha) {
+    if (alpha > 0.25) return {};
     return {.axis = normalize(mirrored(wo)), .stretch = std::max(1.0, std::log(alpha * alpha) / std::log(0.4))};
 }
 
@@ -60,7 +62,9 @@ double check_albedo(const B& bsdf, const Vec3& wo, double alpha, std::uint32_t s
     }
     const double mean = sum / samples;
     const double error = std::sqrt(std::max(0.0, squares / samples - mean * mean) / samples);
-    const auto parts = cells_for(wo, alpha).integrals([&](const Vec3& wi) {
+    SphereCells cells = cells_for(wo, alpha);
+    cells.rings = cells.sectors = 10;
+    const auto parts = cells.integrals([&](const Vec3& wi) {
         return double(bsdf.evaluate(wo, wi, Transport::radiance).value.y) * std::abs(double(wi.z));
     });
     const double quadrature = std::accumulate(parts.begin(), parts.end(), 0.0);
@@ -98,24 +102,29 @@ void check_reciprocity(const B& bsdf) {
     double worst = 0;
     for (int i = 0; i < 20000; ++i) {
         const Vec3 a = uniform_sphere(random.next_2d()), b = uniform_sphere(random.next_2d());
-        const Rgb ab = bsdf.evaluate(a, b, Transport::radiance).value, ba = bsdf.evaluate(b, a, Transport::radiance).value;
-        for (int c = 0; c < 3; ++c) worst = std::max(worst, std::abs(double(ab[c]) - double(ba[c])) / (1e-6 + double(ab[c])));
+        const Rgb ab = bsdf.evaluate(a, b, Transport::radiance).value,
+                  ba = bsdf.evaluate(b, a, Transport::radiance).value;
+        for (int c = 0; c < 3; ++c)
+            worst = std::max(worst, std::abs(double(ab[c]) - double(ba[c])) / (1e-6 + double(ab[c])));
     }
     CHECK(worst < 1e-5);
 }
 
 /// No parameters of `sample` and `evaluate` give what is not finite, negative, not of unit length, or a weight above
-/// `largest_weight`: over 10^6 directions and numbers, among them the extreme ones.
+/// `largest_weight`: over 400000 directions and numbers, among them the extreme ones.
 template <Bsdf B>
 void check_extremes(const B& bsdf, float largest_weight = 1) {
     constexpr float extreme[] = {0, 0x1p-24f, 0.5f, 0.5f - 0x1p-24f, 1 - 0x1p-24f};
     constexpr double cosines[] = {1, 0.999999, 0.5, 1e-2, 1e-4, 1e-6, 1e-7, 0};
     Random random(9);
-    const auto pick = [&](const auto& list) { return list[static_cast<std::size_t>(random.next() * static_cast<float>(std::size(list)))]; };
+    const auto pick = [&](const auto& list) {
+        return list[static_cast<std::size_t>(random.next() * static_cast<float>(std::size(list)))];
+    };
     int bad_samples = 0, bad_values = 0, sampled = 0;
-    for (int i = 0; i < 1000000; ++i) {
+    for (int i = 0; i < 400000; ++i) {
         const auto any_direction = [&] {
-            Vec3 w = random.next() < 0.5f ? uniform_sphere(random.next_2d()) : direction(pick(cosines), 6.28 * double(random.next()));
+            Vec3 w = random.next() < 0.5f ? uniform_sphere(random.next_2d())
+                                          : direction(pick(cosines), 6.28 * double(random.next()));
             if (random.next() < 0.3f) w.z = -w.z;
             return w;
         };
@@ -128,8 +137,9 @@ void check_extremes(const B& bsdf, float largest_weight = 1) {
             ++sampled;
             const float smallest = std::min(s->weight.x, std::min(s->weight.y, s->weight.z));
             const bool good = is_finite(s->wi) && std::abs(length_squared(s->wi) - 1) < 2e-6f && s->wi.z != 0 &&
-                              is_finite(s->weight) && smallest >= 0 && max_component(s->weight) <= largest_weight * (1 + 1e-6f) &&
-                              is_finite(s->pdf.value) && (s->specular ? s->pdf.value == 0 : s->pdf.value > 0) && s->eta > 0;
+                              is_finite(s->weight) && smallest >= 0 &&
+                              max_component(s->weight) <= largest_weight * (1 + 1e-6f) && is_finite(s->pdf.value) &&
+                              (s->specular ? s->pdf.value == 0 : s->pdf.value > 0) && s->eta > 0;
             bad_samples += good ? 0 : 1;
         }
         const BsdfValue v = bsdf.evaluate(wo, i % 3 == 0 ? mirrored(wo) : any_direction(), transport);
@@ -138,7 +148,7 @@ void check_extremes(const B& bsdf, float largest_weight = 1) {
     }
     CHECK(bad_samples == 0);
     CHECK(bad_values == 0);
-    CHECK(sampled > 200000);
+    CHECK(sampled > 80000);
 }
 
 }  // namespace lightswitch::test

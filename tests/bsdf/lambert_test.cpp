@@ -62,7 +62,8 @@ TEST_CASE("lambert: the back is black, unless two-sided") {
 
 TEST_CASE("lambert: impossible parameters are explained") {
     CHECK(lambert.problem() == "");
-    CHECK(Lambert{.reflectance = Rgb(1.5f, 0, 0)}.problem().find("reflectance has a component of 1.5") != std::string::npos);
+    CHECK(Lambert{.reflectance = Rgb(1.5f, 0, 0)}.problem().find("reflectance has a component of 1.5") !=
+          std::string::npos);
     CHECK(Lambert{.reflectance = Rgb(0, -0.1f, 0)}.problem() != "");
     CHECK(TwoSided<Lambert>{{.reflectance = Rgb(0, 0, NAN)}}.problem() != "");
     CHECK(TwoSided<Lambert>{lambert}.phong().diffuse == lambert.reflectance);

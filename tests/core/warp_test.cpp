@@ -20,7 +20,8 @@ constexpr double two_pi = 6.28318530717958647692;
 constexpr int chi_square_tests = 12;
 const double level = test::sidak(1e-6, chi_square_tests);
 
-const float edges[] = {0, 0x1p-24f, 0x1p-12f, 0.25f, 0.5f - 0x1p-24f, 0.5f, 0.5f + 0x1p-24f, 0.75f, 1 - 0x1p-12f, 1 - 0x1p-24f};
+const float edges[] = {0,    0x1p-24f,        0x1p-12f, 0.25f,        0.5f - 0x1p-24f,
+                       0.5f, 0.5f + 0x1p-24f, 0.75f,    1 - 0x1p-12f, 1 - 0x1p-24f};
 
 /// Chi-square of points that should be uniform in the unit square, in 20 x 20 cells.
 template <class Map>
@@ -28,7 +29,9 @@ test::ChiSquare uniform_square_test(const Map& map, std::uint32_t seed) {
     constexpr int side = 20, samples = 400000;
     std::vector<double> observed(side * side), expected(side * side, static_cast<double>(samples) / (side * side));
     Random random(seed);
-    const auto cell = [](double x) { return static_cast<std::size_t>(std::clamp(static_cast<int>(x * side), 0, side - 1)); };
+    const auto cell = [](double x) {
+        return static_cast<std::size_t>(std::clamp(static_cast<int>(x * side), 0, side - 1));
+    };
     for (int i = 0; i < samples; ++i) {
         const DVec2 p = map(random.next_2d());
         observed[cell(p.x) * side + cell(p.y)] += 1;
@@ -47,7 +50,8 @@ double mean(const F& f) {
     constexpr int n = 512;
     double sum = 0;
     for (int i = 0; i < n; ++i)
-        for (int j = 0; j < n; ++j) sum += f(Vec2((static_cast<float>(i) + 0.5f) / n, (static_cast<float>(j) + 0.5f) / n));
+        for (int j = 0; j < n; ++j)
+            sum += f(Vec2((static_cast<float>(i) + 0.5f) / n, (static_cast<float>(j) + 0.5f) / n));
     return sum / (n * n);
 }
 
@@ -62,7 +66,9 @@ DVec2 inverse_concentric_disk(const DVec2& p) {
     return 0.5 * square + 0.5;
 }
 
-double distance(const DVec2& a, const Vec2& b) { return std::max(std::abs(a.x - double(b.x)), std::abs(a.y - double(b.y))); }
+double distance(const DVec2& a, const Vec2& b) {
+    return std::max(std::abs(a.x - double(b.x)), std::abs(a.y - double(b.y)));
+}
 
 }  // namespace
 
@@ -77,7 +83,9 @@ TEST_CASE("chi-square: the p-value is that of the literature") {
 TEST_CASE("chi-square: wrong densities are found") {
     const auto cosine = [](const Vec3& u) { return std::optional(cosine_hemisphere(Vec2(u))); };
     const auto without_cosine = [](const Vec3& w) { return w.z > 0 ? 1 / two_pi : 0; };
-    const auto slightly_wrong = [](const Vec3& w) { return double(cosine_hemisphere_pdf(w.z).value) * (1 + 0.05 * double(w.x)); };
+    const auto slightly_wrong = [](const Vec3& w) {
+        return double(cosine_hemisphere_pdf(w.z).value) * (1 + 0.05 * double(w.x));
+    };
     const auto too_small = [](const Vec3& w) { return 0.97 * double(cosine_hemisphere_pdf(w.z).value); };
     CHECK(chi_square_sphere(cosine, without_cosine, {}, 100000, 1).chi_square.p_value < 1e-12);
     CHECK(chi_square_sphere(cosine, slightly_wrong, {}, 400000, 1).chi_square.p_value < 1e-12);
@@ -120,7 +128,8 @@ TEST_CASE("warp: inverses return to the square") {
         if (within.z < 0.99f) cone = std::max(cone, distance(azimuthal(within, 0.5), u));
         // Narrow: sin(theta) is the radius times sqrt(2 height) where height^2 no longer counts.
         const Vec3 thin = uniform_cone(u, 1e-12f);
-        narrow = std::max(narrow, distance(inverse_concentric_disk(DVec2(Vec2(thin)) / std::sqrt(2 * double(1e-12f))), u));
+        narrow =
+            std::max(narrow, distance(inverse_concentric_disk(DVec2(Vec2(thin)) / std::sqrt(2 * double(1e-12f))), u));
         const Vec2 b = uniform_triangle(u);
         const double lift = std::min(b.x, b.y);
         triangle = std::max(triangle, distance(DVec2(b) + lift, u));
@@ -136,7 +145,8 @@ TEST_CASE("warp: inverses return to the square") {
 TEST_CASE("warp: chi-square against independent parametrisations and the stated densities") {
     const auto polar = [](const DVec2& p) { return DVec2(glm::dot(p, p), turn(p.y, p.x)); };
     CHECK(uniform_square_test([&](const Vec2& u) { return polar(DVec2(concentric_disk(u))); }, 11).p_value > level);
-    CHECK(uniform_square_test([&](const Vec2& u) { return polar(DVec2(uniform_disk(u, 3)) / 3.0); }, 12).p_value > level);
+    CHECK(uniform_square_test([&](const Vec2& u) { return polar(DVec2(uniform_disk(u, 3)) / 3.0); }, 12).p_value >
+          level);
     CHECK(uniform_square_test(
               [](const Vec2& u) {
                   const DVec2 b(uniform_triangle(u));
@@ -148,7 +158,8 @@ TEST_CASE("warp: chi-square against independent parametrisations and the stated 
         const auto map = [&](const Vec2& u) {
             const DVec3 w(uniform_cone(u, height));
             const double r_squared = w.x * w.x + w.y * w.y;  // 1 - cos = sin^2 / (1 + cos)
-            return DVec2(height < 1 ? r_squared / (1 + w.z) / double(height) : (1 - w.z) / double(height), turn(w.y, w.x));
+            return DVec2(height < 1 ? r_squared / (1 + w.z) / double(height) : (1 - w.z) / double(height),
+                         turn(w.y, w.x));
         };
         CHECK(uniform_square_test(map, 14).p_value > level);
     }
@@ -162,16 +173,20 @@ TEST_CASE("warp: chi-square against independent parametrisations and the stated 
     };
     check([](const Vec2& u) { return cosine_hemisphere(u); },
           [](const Vec3& w) { return double(cosine_hemisphere_pdf(w.z).value); }, 15);
-    check([](const Vec2& u) { return uniform_sphere(u); }, [](const Vec3&) { return double(uniform_sphere_pdf().value); }, 16);
+    check([](const Vec2& u) { return uniform_sphere(u); },
+          [](const Vec3&) { return double(uniform_sphere_pdf().value); }, 16);
     check([](const Vec2& u) { return uniform_cone(u, 0.7f); },
           [](const Vec3& w) { return w.z > 0.3f ? double(uniform_cone_pdf(0.7f).value) : 0; }, 17);
     check([](const Vec2& u) { return uniform_cone(u, 1.8f); },
           [](const Vec3& w) { return w.z > -0.8f ? double(uniform_cone_pdf(1.8f).value) : 0; }, 18);
-    check([](const Vec2& u) { return uniform_cone(u, 2); }, [](const Vec3&) { return double(uniform_cone_pdf(2).value); }, 19);
+    check([](const Vec2& u) { return uniform_cone(u, 2); },
+          [](const Vec3&) { return double(uniform_cone_pdf(2).value); }, 19);
 }
 
 TEST_CASE("warp: moments have their analytic values") {
-    const auto near = [](double value, double truth) { CHECK(value == doctest::Approx(truth).epsilon(2e-4).scale(0.1)); };
+    const auto near = [](double value, double truth) {
+        CHECK(value == doctest::Approx(truth).epsilon(2e-4).scale(0.1));
+    };
     near(mean([](const Vec2& u) { return square(concentric_disk(u).x); }), 0.25);
     near(mean([](const Vec2& u) { return square(square(concentric_disk(u).y)); }), 0.125);
     near(mean([](const Vec2& u) { return concentric_disk(u).x; }), 0);
@@ -193,7 +208,8 @@ TEST_CASE("warp: results are inside their domain, to the edges of the square") {
     const auto check = [](const Vec2& u) {
         const Vec2 p = concentric_disk(u), b = uniform_triangle(u);
         bool good = length_squared(Vec3(p, 0)) <= 1 + 4e-7f && b.x >= 0 && b.y >= 0 && b.x + b.y <= 1;
-        for (const Vec3& w : {cosine_hemisphere(u), uniform_sphere(u), uniform_cone(u, 1e-9f), uniform_cone(u, 2), uniform_cone(u, 0.3f)})
+        for (const Vec3& w : {cosine_hemisphere(u), uniform_sphere(u), uniform_cone(u, 1e-9f), uniform_cone(u, 2),
+                              uniform_cone(u, 0.3f)})
             good = good && is_finite(w) && std::abs(length_squared(w) - 1) < 1e-6f;
         return good && cosine_hemisphere(u).z > 0 && uniform_cone(u, 0.3f).z > 0.7f - 1e-6f;
     };
@@ -212,8 +228,9 @@ TEST_CASE("warp: results are inside their domain, to the edges of the square") {
 }
 
 TEST_CASE("warp: neighbours in the square stay neighbours") {
-    // The largest stretch of each map, over steps that cross all seams of its pieces: sqrt(2) would be the least possible
-    // for a disk of radius 1 from a square of half its width along the diagonal. A polar map would tear at the angle 0.
+    // The largest stretch of each map, over steps that cross all seams of its pieces: sqrt(2) would be the least
+    // possible for a disk of radius 1 from a square of half its width along the diagonal. A polar map would tear at the
+    // angle 0.
     constexpr float step = 1.0f / 512;
     float disk = 0, triangle = 0, hemisphere_xy = 0;
     for (float x = 0; x < 1 - step; x += step)
@@ -222,7 +239,8 @@ TEST_CASE("warp: neighbours in the square stay neighbours") {
                 const Vec2 u(x, y);
                 disk = std::max(disk, glm::length(concentric_disk(u + d) - concentric_disk(u)) / step);
                 triangle = std::max(triangle, glm::length(uniform_triangle(u + d) - uniform_triangle(u)) / step);
-                hemisphere_xy = std::max(hemisphere_xy, glm::length(Vec2(cosine_hemisphere(u + d)) - Vec2(cosine_hemisphere(u))) / step);
+                hemisphere_xy = std::max(
+                    hemisphere_xy, glm::length(Vec2(cosine_hemisphere(u + d)) - Vec2(cosine_hemisphere(u))) / step);
             }
     CHECK(disk < 2.6f);
     CHECK(triangle < 1.2f);

@@ -13,11 +13,14 @@ double cumulative(const Filter& filter, double x) {
     const double r = double(filter.radius()), t = std::clamp(x / r, -1.0, 1.0);
     if (filter.kind() == Filter::Kind::box) return 0.5 + 0.5 * t;
     if (filter.kind() == Filter::Kind::tent) return t < 0 ? 0.5 * (1 + t) * (1 + t) : 1 - 0.5 * (1 - t) * (1 - t);
-    const auto half = [](double z) { return std::sqrt(std::acos(-1.0) / 2) * std::erf(z / std::sqrt(2.0)) - z * std::exp(-8.0); };
+    const auto half = [](double z) {
+        return std::sqrt(std::acos(-1.0) / 2) * std::erf(z / std::sqrt(2.0)) - z * std::exp(-8.0);
+    };
     return 0.5 + 0.5 * half(4 * t) / half(4);
 }
 
-const Filter filters[] = {Filter::box(), Filter::tent(), Filter::tent(2.5f), Filter::gaussian(), Filter::gaussian(1.7f)};
+const Filter filters[] = {Filter::box(), Filter::tent(), Filter::tent(2.5f), Filter::gaussian(),
+                          Filter::gaussian(1.7f)};
 
 }  // namespace
 
@@ -42,7 +45,8 @@ TEST_CASE("filter: samples are the inverse of the distribution") {
 }
 
 TEST_CASE("filter: the density is that of the samples and integrates to 1") {
-    // Chi-square over 16 x 16 cells of the square |offset| <= radius, seeds fixed; false alarms: 1e-6 for all five together.
+    // Chi-square over 16 x 16 cells of the square |offset| <= radius, seeds fixed; false alarms: 1e-6 for all five
+    // together.
     const double level = test::sidak(1e-6, 5);
     for (const Filter& filter : filters) {
         CAPTURE(filter.name());
@@ -53,8 +57,9 @@ TEST_CASE("filter: the density is that of the samples and integrates to 1") {
         for (int i = 0; i < side; ++i)
             for (int j = 0; j < side; ++j) {
                 const DVec2 low(-r + i * step, -r + j * step);
-                expected.push_back(samples * test::integrate([&](double x, double y) { return double(filter.pdf(Vec2(DVec2(x, y)))); },
-                                                             low, low + step, 1e-8));
+                expected.push_back(
+                    samples * test::integrate([&](double x, double y) { return double(filter.pdf(Vec2(DVec2(x, y)))); },
+                                              low, low + step, 1e-8));
                 integral += expected.back() / samples;
             }
         CHECK(integral == doctest::Approx(1).epsilon(1e-5));
@@ -71,7 +76,8 @@ TEST_CASE("filter: the density is that of the samples and integrates to 1") {
     test::Random random(6);
     std::vector<double> observed(10), expected(10, 1000);
     for (int i = 0; i < 10000; ++i)
-        observed[static_cast<std::size_t>(std::clamp(10 * cumulative(Filter::tent(1.1f), double(Filter::tent(1).sample(random.next_2d()).x)), 0.0, 9.9))] += 1;
+        observed[static_cast<std::size_t>(std::clamp(
+            10 * cumulative(Filter::tent(1.1f), double(Filter::tent(1).sample(random.next_2d()).x)), 0.0, 9.9))] += 1;
     CHECK(test::chi_square(observed, expected).p_value < 1e-6);
 }
 
@@ -82,7 +88,8 @@ TEST_CASE("filter: known values") {
     CHECK(Filter::tent().sample({0.125f, 0.5f}).x == doctest::Approx(-0.5));
     // The Gaussian keeps nearly its own variance: 0.25 for the standard deviation 0.5.
     double variance = 0;
-    for (int i = 0; i < 10000; ++i) variance += 1e-4 * double(square(Filter::gaussian().sample({(static_cast<float>(i) + 0.5f) * 1e-4f, 0}).x));
+    for (int i = 0; i < 10000; ++i)
+        variance += 1e-4 * double(square(Filter::gaussian().sample({(static_cast<float>(i) + 0.5f) * 1e-4f, 0}).x));
     CHECK(variance == doctest::Approx(0.25).epsilon(0.01));
     CHECK(Filter::gaussian().radius() == 2);
     CHECK(Filter::gaussian().name() == "gaussian");
@@ -93,6 +100,7 @@ TEST_CASE("filter: known values") {
 TEST_CASE("filter: impossible radii are explained") {
     CHECK(Filter::box().problem() == "");
     CHECK(Filter::gaussian(0.5f).problem() == "");
-    for (const float r : {0.0f, -1.0f, infinity, NAN}) CHECK(Filter::tent(r).problem().find("radius") != std::string::npos);
+    for (const float r : {0.0f, -1.0f, infinity, NAN})
+        CHECK(Filter::tent(r).problem().find("radius") != std::string::npos);
     CHECK(Filter::gaussian(-1).problem().find("four standard deviations") != std::string::npos);
 }

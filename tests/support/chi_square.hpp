@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numeric>
+#include <optional>
 #include <ostream>
 #include <random>
 #include <stdexcept>
@@ -55,7 +56,8 @@ inline double gamma_q(double a, double x) {
     return front * h;
 }
 
-/// The level of each of `tests` independent tests at which all together give a false alarm with probability `total` (Sidak).
+/// The level of each of `tests` independent tests at which all together give a false alarm with probability `total`
+/// (Sidak).
 inline double sidak(double total, int tests) { return -std::expm1(std::log1p(-total) / tests); }
 
 struct ChiSquare {
@@ -64,13 +66,15 @@ struct ChiSquare {
     double p_value = 1;  ///< probability of a statistic at least as large when the density is right
 
     friend std::ostream& operator<<(std::ostream& out, const ChiSquare& r) {
-        return out << "chi-square " << r.statistic << " with " << r.degrees_of_freedom << " degrees of freedom, p = " << r.p_value;
+        return out << "chi-square " << r.statistic << " with " << r.degrees_of_freedom
+                   << " degrees of freedom, p = " << r.p_value;
     }
 };
 
-/// Compares counts with their expectations, which have the same sum. Cells are pooled from the rarest upwards until each
-/// pool expects `minimum`: 25 keeps the far tail of Pearson's approximation honest at the small levels used here.
-inline ChiSquare chi_square(const std::vector<double>& observed, const std::vector<double>& expected, double minimum = 25) {
+/// Compares counts with their expectations, which have the same sum. Cells are pooled from the rarest upwards until
+/// each pool expects `minimum`: 25 keeps the far tail of Pearson's approximation honest at the small levels used here.
+inline ChiSquare chi_square(const std::vector<double>& observed, const std::vector<double>& expected,
+                            double minimum = 25) {
     std::vector<std::size_t> order(expected.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return expected[i] < expected[j]; });
@@ -93,25 +97,30 @@ inline ChiSquare chi_square(const std::vector<double>& observed, const std::vect
     return result;
 }
 
-/// Integral of `f` over a rectangle: Gauss's 3 x 3 points, halved in both axes until that changes less than `tolerance`
-/// (absolute) or `depth` is used up, which bounds the work where `f` jumps.
+/// Integral of `f` over a rectangle: Gauss's 3 x 3 points, halved in both axes at least twice, then until that changes
+/// less than `tolerance` (absolute) or `depth` is used up. A rectangle of which some corners have `f` = 0 and others do
+/// not is always halved: there `f` may jump, as densities do at the horizon, beside all of Gauss's points.
 template <class F>
-double integrate(const F& f, DVec2 low, DVec2 high, double tolerance, int depth = 6) {
+double integrate(const F& f, DVec2 low, DVec2 high, double tolerance, int depth = 5) {
     const auto gauss = [&f](const DVec2& a, const DVec2& b) {
         constexpr double node = 0.77459666924148337704, weights[3] = {5. / 18, 8. / 18, 5. / 18};
         const DVec2 center = 0.5 * (a + b), half = 0.5 * (b - a);
         double sum = 0;
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 3; ++j)
-                sum += weights[i] * weights[j] * f(center.x + (i - 1) * node * half.x, center.y + (j - 1) * node * half.y);
+                sum +=
+                    weights[i] * weights[j] * f(center.x + (i - 1) * node * half.x, center.y + (j - 1) * node * half.y);
         return sum * (b.x - a.x) * (b.y - a.y);
     };
-    const auto refine = [&](const auto& self, const DVec2& a, const DVec2& b, double whole, double limit, int left) -> double {
+    const auto refine = [&](const auto& self, const DVec2& a, const DVec2& b, double whole, double limit,
+                            int left) -> double {
         const DVec2 c = 0.5 * (a + b);
         const DVec2 lows[4] = {a, {c.x, a.y}, {a.x, c.y}, c}, highs[4] = {c, {b.x, c.y}, {c.x, b.y}, b};
         double parts[4], sum = 0;
         for (int i = 0; i < 4; ++i) sum += parts[i] = gauss(lows[i], highs[i]);
-        if (left <= 0 || std::abs(sum - whole) < limit) return sum;
+        const int zeros = (f(a.x, a.y) == 0) + (f(b.x, a.y) == 0) + (f(a.x, b.y) == 0) + (f(b.x, b.y) == 0);
+        const bool smooth = left < depth && (zeros == 0 || zeros == 4);
+        if (left <= 0 || (smooth && std::abs(sum - whole) < limit)) return sum;
         sum = 0;
         for (int i = 0; i < 4; ++i) sum += self(self, lows[i], highs[i], parts[i], 0.5 * limit, left - 1);
         return sum;
@@ -119,8 +128,8 @@ double integrate(const F& f, DVec2 low, DVec2 high, double tolerance, int depth 
     return refine(refine, low, high, gauss(low, high), tolerance, depth);
 }
 
-/// How the sphere is cut into cells: rings around `axis` and sectors. Ring edges are at 1 - cos(theta) = 2 q^stretch for
-/// equidistant q: 1 makes all cells equal, more makes them finer around the axis, for narrow lobes.
+/// How the sphere is cut into cells: rings around `axis` and sectors. Ring edges are at 1 - cos(theta) = 2 q^stretch
+/// for equidistant q: 1 makes all cells equal, more makes them finer around the axis, for narrow lobes.
 struct SphereCells {
     Vec3 axis{0, 0, 1};
     double stretch = 1;
@@ -132,7 +141,8 @@ struct SphereCells {
         const Basis basis(axis);
         return Vec3(local.x * DVec3(basis.tangent) + local.y * DVec3(basis.bitangent) + local.z * DVec3(basis.normal));
     }
-    double jacobian(double q) const { return 2 * stretch * std::pow(q, stretch - 1); }
+    /// Of solid angle to (q, phi). Never 0, which would look like the edge of the density.
+    double jacobian(double q) const { return 2 * stretch * std::pow(std::max(q, 1e-9), stretch - 1); }
 
     std::size_t index(const Vec3& w) const {
         const Basis basis(axis);
@@ -141,8 +151,8 @@ struct SphereCells {
         const double lift = 0.5 * glm::dot(difference, difference);
         const double phi = std::atan2(glm::dot(d, DVec3(basis.bitangent)), glm::dot(d, DVec3(basis.tangent)));
         const int ring = std::clamp(static_cast<int>(std::pow(0.5 * lift, 1 / stretch) * rings), 0, rings - 1);
-        const int sector = std::clamp(static_cast<int>((phi / (2 * 3.14159265358979323846) + (phi < 0 ? 1 : 0)) * sectors), 0,
-                                      sectors - 1);
+        const int sector = std::clamp(
+            static_cast<int>((phi / (2 * 3.14159265358979323846) + (phi < 0 ? 1 : 0)) * sectors), 0, sectors - 1);
         return static_cast<std::size_t>(ring * sectors + sector);
     }
 
@@ -165,10 +175,12 @@ struct SphereTest {
     double integral = 0;  ///< of the density, over the sphere
 };
 
-/// Tests that directions from `sample(u)` (an optional unit vector for uniform `u` in the unit cube) follow `pdf(direction)`
-/// per solid angle. What `sample` refuses counts in one cell more, which expects what the density lacks to 1.
+/// Tests that directions from `sample(u)` (an optional unit vector for uniform `u` in the unit cube) follow
+/// `pdf(direction)` per solid angle. What `sample` refuses counts in one cell more, which expects what the density
+/// lacks to 1.
 template <class Sample, class Pdf>
-SphereTest chi_square_sphere(const Sample& sample, const Pdf& pdf, const SphereCells& cells, int samples, std::uint32_t seed) {
+SphereTest chi_square_sphere(const Sample& sample, const Pdf& pdf, const SphereCells& cells, int samples,
+                             std::uint32_t seed) {
     std::vector<double> expected = cells.integrals(pdf);
     const double integral = std::accumulate(expected.begin(), expected.end(), 0.0);
     expected.push_back(std::max(0.0, 1 - integral));

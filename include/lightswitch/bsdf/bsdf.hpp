@@ -3,10 +3,10 @@
 // What a surface model is: the concept that every one meets, and the values that they exchange.
 
 #include <lightswitch/core/math.hpp>
+#include <lightswitch/core/maybe.hpp>
 #include <lightswitch/core/pdf.hpp>
 
 #include <concepts>
-#include <optional>
 #include <string>
 
 namespace lightswitch {
@@ -51,7 +51,7 @@ template <class B>
 concept Bsdf = requires(const B bsdf, const Vec3 direction, const Vec3 u, const Transport transport) {
     { B::specular } -> std::convertible_to<bool>;
     { bsdf.evaluate(direction, direction, transport) } -> std::same_as<BsdfValue>;
-    { bsdf.sample(direction, u, transport) } -> std::same_as<std::optional<BsdfSample>>;
+    { bsdf.sample(direction, u, transport) } -> std::same_as<Maybe<BsdfSample>>;
     { bsdf.problem() } -> std::convertible_to<std::string>;
 };
 

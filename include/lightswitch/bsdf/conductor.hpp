@@ -15,7 +15,7 @@ struct Conductor {
 
     BsdfValue evaluate(const Vec3&, const Vec3&, Transport) const { return {}; }
 
-    std::optional<BsdfSample> sample(const Vec3& wo, const Vec3&, Transport) const {
+    Maybe<BsdfSample> sample(const Vec3& wo, const Vec3&, Transport) const {
         if (!(wo.z > 0)) return {};
         return BsdfSample{
             .wi = {-wo.x, -wo.y, wo.z}, .weight = reflectance * fresnel_conductor(wo.z, eta, k), .specular = true};

@@ -15,10 +15,10 @@ struct Dielectric {
 
     BsdfValue evaluate(const Vec3&, const Vec3&, Transport) const { return {}; }
 
-    /// Reflects with the probability of Fresnel's reflectance, for which `u.x` is drawn, so that the reflectance cancels
-    /// from the weight. Refracted radiance is scaled by 1 / eta^2, as the same power fills another solid angle;
+    /// Reflects with the probability of Fresnel's reflectance, for which `u.x` is drawn, so that the reflectance
+    /// cancels from the weight. Refracted radiance is scaled by 1 / eta^2, as the same power fills another solid angle;
     /// importance is not (Veach 1997, section 5.2).
-    std::optional<BsdfSample> sample(const Vec3& wo, const Vec3& u, Transport transport) const {
+    Maybe<BsdfSample> sample(const Vec3& wo, const Vec3& u, Transport transport) const {
         if (wo.z == 0) return {};
         const FresnelDielectric fresnel = fresnel_dielectric(wo.z, eta);
         if (u.x < fresnel.reflectance)
@@ -26,7 +26,8 @@ struct Dielectric {
         if (fresnel.cos_t == 0) return {};
         const float inverse = 1 / fresnel.eta;
         const float scale = transport == Transport::radiance ? inverse * inverse : 1;
-        return BsdfSample{.wi = {-wo.x * inverse, -wo.y * inverse, fresnel.cos_t},
+        // Refraction into a thinner medium enlarges the rounding of `wo`, hence the normalisation.
+        return BsdfSample{.wi = normalize(Vec3(-wo.x * inverse, -wo.y * inverse, fresnel.cos_t)),
                           .weight = transmittance * scale,
                           .specular = true,
                           .eta = fresnel.eta};

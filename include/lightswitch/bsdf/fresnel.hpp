@@ -1,6 +1,7 @@
 #pragma once
 
-// Fresnel's equations: how much unpolarised light a smooth boundary reflects. Exact, no approximation by powers of cosines.
+// Fresnel's equations: how much unpolarised light a smooth boundary reflects. Exact, no approximation by powers of
+// cosines.
 
 #include <lightswitch/core/math.hpp>
 
@@ -11,12 +12,13 @@ namespace lightswitch {
 /// What happens at a boundary between two transparent media.
 struct FresnelDielectric {
     float reflectance;  ///< fraction of the power that is reflected, 0 to 1
-    float cos_t;        ///< cosine of the refracted direction, with the sign opposite to that of the incident one; 0 if none
+    float cos_t;        ///< cosine of the refracted direction, of sign opposite to the incident one; 0 if there is none
     float eta;          ///< index of refraction on the far side over that on the incident side
 };
 
 /// Reflectance and refraction for the signed cosine `cos_i` of the incident direction and `eta`, above 0, the index of
-/// refraction behind the surface (cos < 0) over that in front of it (Born and Wolf, Principles of Optics, section 1.5.2).
+/// refraction behind the surface (cos < 0) over that in front of it (Born and Wolf, Principles of Optics, section
+/// 1.5.2).
 ///
 /// Written with q = eta * |cos_t| = sqrt(eta^2 - 1 + cos_i^2), in which nothing cancels when eta is near 1 or the
 /// direction is grazing. q^2 <= 0 is total internal reflection.
@@ -48,7 +50,9 @@ inline float fresnel_conductor(float cos_i, float eta, float k) {
 
     const float perpendicular = (square(a - cos_i) + b * b) / (square(a + cos_i) + b * b);
     const float ac = a * cos_i, bc_squared = b * b * c_squared;
-    const float ratio = (square(ac - s_squared) + bc_squared) / (square(ac + s_squared) + bc_squared);
+    // At normal incidence, a tiny eta without k leaves a, b and the sine 0.
+    const float divisor = square(ac + s_squared) + bc_squared;
+    const float ratio = divisor > 0 ? (square(ac - s_squared) + bc_squared) / divisor : 1;
     return 0.5f * perpendicular * (1 + ratio);
 }
 

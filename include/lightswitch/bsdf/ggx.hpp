@@ -7,8 +7,8 @@
 
 namespace lightswitch {
 
-/// Microfacet normals after Trowbridge and Reitz with the masking of Smith (Walter et al., "Microfacet Models for Refraction
-/// through Rough Surfaces", 2007; there called GGX). Directions are unit, local, with z > 0.
+/// Microfacet normals after Trowbridge and Reitz with the masking of Smith (Walter et al., "Microfacet Models for
+/// Refraction through Rough Surfaces", 2007; there called GGX). Directions are unit, local, with z > 0.
 class Ggx {
 public:
     /// `alpha` in (0, 1]; values below 1e-4 act as 1e-4, under which floats cannot resolve the lobe.
@@ -20,13 +20,12 @@ public:
         return alpha_squared_ * inv_pi / (spread * spread);
     }
 
-    /// z + sqrt(z^2 + alpha^2 (1 - z^2)) for the cosine z of a direction: Smith's masking is G1 = 2 z / smith_denominator(z).
-    float smith_denominator(float z) const {
-        return z + std::sqrt(alpha_squared_ + (1 - alpha_squared_) * z * z);
-    }
+    /// z + sqrt(z^2 + alpha^2 (1 - z^2)) for the cosine z of a direction: Smith's masking is G1 = 2 z /
+    /// smith_denominator(z).
+    float smith_denominator(float z) const { return z + std::sqrt(alpha_squared_ + (1 - alpha_squared_) * z * z); }
 
-    /// A normal, not of unit length, with density D G1 dot(wo, m) / wo.z: those that are visible from `wo` (Heitz, JCGT 2018,
-    /// by way of Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical Caps", 2023).
+    /// A normal, not of unit length, with density D G1 dot(wo, m) / wo.z: those that are visible from `wo` (Heitz, JCGT
+    /// 2018, by way of Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical Caps", 2023).
     ///
     /// On the hemisphere of alpha 1 the visible normals are halfway between `wo` and a uniform direction of a spherical
     /// cap. The cap is reached through the concentric disk, and its height above the lower rim is a product, so the
@@ -36,7 +35,8 @@ public:
         const auto [p, rim_distance] = detail::concentric(u);
         const float cap_height = 1 + w.z;
         const float scale = safe_sqrt(cap_height * (2 - cap_height * (1 - rim_distance)));
-        return {alpha_ * (w.x + p.x * scale), alpha_ * (w.y + p.y * scale), cap_height * std::max(rim_distance, 0x1p-24f)};
+        return {alpha_ * (w.x + p.x * scale), alpha_ * (w.y + p.y * scale),
+                cap_height * std::max(rim_distance, 0x1p-24f)};
     }
 
 private:

@@ -11,12 +11,12 @@ struct Lambert {
 
     Rgb reflectance{0.5f};  ///< fraction of the light that is reflected, each component 0 to 1
 
-    BsdfValue evaluate(const Vec3& wo, const Vec3& wi, Transport) const {
+    [[gnu::always_inline]] BsdfValue evaluate(const Vec3& wo, const Vec3& wi, Transport) const {
         if (!(wo.z > 0 && wi.z > 0)) return {};
         return {reflectance * inv_pi, cosine_hemisphere_pdf(wi.z)};
     }
 
-    std::optional<BsdfSample> sample(const Vec3& wo, const Vec3& u, Transport) const {
+    [[gnu::always_inline]] Maybe<BsdfSample> sample(const Vec3& wo, const Vec3& u, Transport) const {
         if (!(wo.z > 0)) return {};
         const Vec3 wi = cosine_hemisphere(Vec2(u));
         return BsdfSample{.wi = wi, .weight = reflectance, .pdf = cosine_hemisphere_pdf(wi.z)};

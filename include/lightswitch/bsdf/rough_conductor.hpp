@@ -8,8 +8,8 @@ namespace lightswitch {
 
 /// Rough metal, front side only: microfacets with the isotropic GGX distribution.
 ///
-/// Single scattering with separable Smith masking, G = G1(wo) G1(wi), as Mitsuba's `roughconductor`: light that would leave
-/// after several bounces between facets is lost, so rough metals are somewhat too dark.
+/// Single scattering with separable Smith masking, G = G1(wo) G1(wi), as Mitsuba's `roughconductor`: light that would
+/// leave after several bounces between facets is lost, so rough metals are somewhat too dark.
 struct RoughConductor {
     static constexpr bool specular = false;
 
@@ -31,7 +31,7 @@ struct RoughConductor {
     }
 
     /// Reflects at a visible normal. D and G1(wo) cancel: the weight is Fresnel's reflectance times G1(wi).
-    std::optional<BsdfSample> sample(const Vec3& wo, const Vec3& u, Transport) const {
+    Maybe<BsdfSample> sample(const Vec3& wo, const Vec3& u, Transport) const {
         if (!(wo.z > 0)) return {};
         const Ggx ggx(alpha);
         const Vec3 m = ggx.sample_visible_normal(wo, Vec2(u));
@@ -53,7 +53,8 @@ struct RoughConductor {
         return text.empty() ? reflectance_problem("reflectance", reflectance) : text;
     }
 
-    /// No diffuse term; the highlight of Blinn's exponent for the same roughness, 2 / alpha^2 - 2, kept within 1 to 1000.
+    /// No diffuse term; the highlight of Blinn's exponent for the same roughness, 2 / alpha^2 - 2, kept within 1 to
+    /// 1000.
     PhongTerms phong() const {
         return {.diffuse = Rgb(0),
                 .specular = reflectance * fresnel_conductor(1, eta, k),

@@ -11,12 +11,12 @@ struct TwoSided {
 
     Inner inner;
 
-    BsdfValue evaluate(const Vec3& wo, const Vec3& wi, Transport transport) const {
+    [[gnu::always_inline]] BsdfValue evaluate(const Vec3& wo, const Vec3& wi, Transport transport) const {
         const float side = std::copysign(1.0f, wo.z);
         return inner.evaluate(flip(wo, side), flip(wi, side), transport);
     }
 
-    std::optional<BsdfSample> sample(const Vec3& wo, const Vec3& u, Transport transport) const {
+    [[gnu::always_inline]] Maybe<BsdfSample> sample(const Vec3& wo, const Vec3& u, Transport transport) const {
         const float side = std::copysign(1.0f, wo.z);
         auto result = inner.sample(flip(wo, side), u, transport);
         if (result) result->wi.z *= side;

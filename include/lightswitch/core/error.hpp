@@ -16,9 +16,9 @@ class Error : public std::runtime_error {
 /// A place in an input file, carried by whatever was made from it so that a later check can still name it.
 /// All parts are optional: things made in code have no file.
 struct Origin {
-    std::string file;     ///< path as the user gave it
+    std::string file{};     ///< path as the user gave it
     int line = 0;         ///< 1-based; 0 when unknown
-    std::string element;  ///< for example `<shape type="obj">`
+    std::string element{};  ///< for example `<shape type="obj">`
 
     /// "room.xml:12: <shape type="obj">: ", or as much of it as is known.
     std::string prefix() const {

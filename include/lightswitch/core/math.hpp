@@ -2,6 +2,10 @@
 
 // Vectors, matrices, colours and directions. The only file that includes GLM.
 
+// Unless its functions are inlined, GLM passes every vector through memory.
+#ifndef GLM_FORCE_INLINE
+#define GLM_FORCE_INLINE
+#endif
 #include <glm/glm.hpp>
 
 #include <algorithm>
@@ -32,9 +36,9 @@ constexpr float gamma_bound(int n) {
     return e / (1 - e);
 }
 
-inline float dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline float length_squared(const Vec3& v) { return dot(v, v); }
-inline Vec3 normalize(const Vec3& v) { return v * (1.0f / std::sqrt(length_squared(v))); }
+[[gnu::always_inline]] inline float dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+[[gnu::always_inline]] inline float length_squared(const Vec3& v) { return dot(v, v); }
+[[gnu::always_inline]] inline Vec3 normalize(const Vec3& v) { return v * (1.0f / std::sqrt(length_squared(v))); }
 inline float max_component(const Vec3& v) { return std::max(v.x, std::max(v.y, v.z)); }
 inline float square(float x) { return x * x; }
 inline float safe_sqrt(float x) { return std::sqrt(std::max(x, 0.0f)); }
@@ -56,7 +60,7 @@ inline bool is_finite(const Vec3& v) { return is_finite(v.x) && is_finite(v.y) &
 struct Basis {
     Vec3 tangent, bitangent, normal;
 
-    explicit Basis(const Vec3& unit_normal) : normal(unit_normal) {
+    [[gnu::always_inline]] explicit Basis(const Vec3& unit_normal) : normal(unit_normal) {
         const float sign = std::copysign(1.0f, normal.z);
         const float a = -1.0f / (sign + normal.z);
         const float b = normal.x * normal.y * a;
@@ -64,8 +68,8 @@ struct Basis {
         bitangent = Vec3(b, sign + normal.y * normal.y * a, -normal.y);
     }
 
-    Vec3 to_local(const Vec3& v) const { return {dot(v, tangent), dot(v, bitangent), dot(v, normal)}; }
-    Vec3 to_world(const Vec3& v) const { return v.x * tangent + v.y * bitangent + v.z * normal; }
+    [[gnu::always_inline]] Vec3 to_local(const Vec3& v) const { return {dot(v, tangent), dot(v, bitangent), dot(v, normal)}; }
+    [[gnu::always_inline]] Vec3 to_world(const Vec3& v) const { return v.x * tangent + v.y * bitangent + v.z * normal; }
 };
 
 }  // namespace lightswitch

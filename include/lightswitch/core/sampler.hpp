@@ -34,6 +34,14 @@ constexpr std::uint32_t reverse_bits(std::uint32_t x) {
     return ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
 }
 
+/// One step of the generator wyrand (Wang Yi, 2019): the two halves of a product, folded. One multiplication for 64 bits that
+/// pass the usual batteries of tests.
+constexpr std::uint64_t fold_multiply(std::uint64_t x) {
+    __extension__ using Wide = unsigned __int128;
+    const Wide product = static_cast<Wide>(x) * (x ^ 0xe7037ed1a0b428dbu);
+    return static_cast<std::uint64_t>(product) ^ static_cast<std::uint64_t>(product >> 64);
+}
+
 /// Owen's nested uniform scrambling of a fraction whose bits are given in reversed order; different seeds give independent
 /// scramblings. The hash is the one of Laine and Karras (2011) with the constants that Vegdahl found ("Building a Better
 /// LK Hash", 2021); it works because multiplication and addition carry only towards higher bits.
@@ -59,39 +67,48 @@ inline float to_unit_float(std::uint32_t x) { return static_cast<float>(x >> 8) 
 
 }  // namespace detail
 
-/// The part of the sample points that all pixels of one iteration share.
+/// The part of the sample points that all streams of one iteration share.
 ///
-/// Dimensions come in pairs, each an independently shuffled (0,2)-sequence; every stream then scrambles its own copy. The
-/// samples that a pixel gets over 2^k iterations are therefore stratified in each pair, while two pixels share nothing (after
-/// Burley, "Practical Hash-based Owen Scrambling", JCGT 2020, with the shuffle moved out of the pixel).
+/// Dimensions come in pairs. Each pair is a (0,2)-sequence of its own: Sobol' points, shuffled and Owen-scrambled with the seed and
+/// the number of the pair (Burley, "Practical Hash-based Owen Scrambling", JCGT 2020). Every stream then moves them by a random
+/// digital shift of its own (an exclusive or, per dimension). The numbers of one pixel are so stratified over 2^k iterations, in
+/// each pair; single numbers are uniform and different pixels uncorrelated, because the shifts are independent.
 class IterationPoints {
 public:
     static constexpr std::uint32_t sobol_pairs = 64;  ///< beyond this many pairs points are independent
 
     IterationPoints(Sampling sampling, std::uint64_t seed, std::uint64_t iteration)
-        : seed_(detail::mix64(seed + 0x632be59bd9b4e019u)), iteration_(detail::mix64(seed_ ^ (iteration + 1))),
-          pairs_(sampling == Sampling::sobol ? sobol_pairs : 0) {
-        const auto index = static_cast<std::uint32_t>(iteration);
-        // Sequences repeat after 2^32 iterations; the high word then selects another scrambling.
-        seed_ ^= detail::mix64(iteration >> 32);
+        : pairs_(sampling == Sampling::sobol ? sobol_pairs : 0) {
+        // Sequences repeat after 2^32 iterations; the high word then selects other ones.
+        seed_ = detail::mix64(detail::mix64(seed + 0x632be59bd9b4e019u) ^ (iteration >> 32));
+        iteration_ = detail::mix64(seed_ ^ (iteration + 1));
+        const auto reversed = detail::reverse_bits(static_cast<std::uint32_t>(iteration));
         for (std::uint32_t pair = 0; pair < pairs_; ++pair) {
-            const auto shuffle = static_cast<std::uint32_t>(detail::mix64(seed_ + pair));
+            const std::uint64_t bits = detail::mix64(seed_ + 2 * pair), more = detail::mix64(seed_ + 2 * pair + 1);
             const std::uint32_t shuffled =
-                detail::reverse_bits(detail::owen_scramble_reversed(detail::reverse_bits(index), shuffle));
-            reversed_[2 * pair] = shuffled;  // the radical inverse is the index with its bits reversed
-            reversed_[2 * pair + 1] = detail::reverse_bits(detail::sobol_second(shuffled));
+                detail::reverse_bits(detail::owen_scramble_reversed(reversed, static_cast<std::uint32_t>(bits >> 32)));
+            const auto scrambled = [](std::uint32_t fraction_reversed, std::uint64_t seed_bits) {
+                return detail::reverse_bits(
+                    detail::owen_scramble_reversed(fraction_reversed, static_cast<std::uint32_t>(seed_bits)));
+            };
+            // The radical inverse of an index is the index with its bits reversed.
+            points_[pair] = {scrambled(shuffled, more),
+                             scrambled(detail::reverse_bits(detail::sobol_second(shuffled)), more >> 32)};
         }
     }
 
 private:
     friend class Sampler;
+    struct Point {
+        std::uint32_t x, y;
+    };
     std::uint64_t seed_, iteration_;
     std::uint32_t pairs_;
-    std::array<std::uint32_t, 2 * sobol_pairs> reversed_;
+    std::array<Point, sobol_pairs> points_;
 };
 
 /// The numbers of one pixel sample or one light path. Cheap to make; refers to its `IterationPoints`, which must outlive it.
-/// Each call advances to the next dimension, so the same sequence of calls gives the same numbers.
+/// Each call advances by one pair of dimensions, so the same sequence of calls gives the same numbers.
 class Sampler {
 public:
     /// `stream` tells apart independent uses within an iteration (pixels, light paths), `index` the pixel or path.
@@ -101,23 +118,19 @@ public:
                              ((index + 1) * 0x9e3779b97f4a7c15u + (std::uint64_t{stream} << 56)))) {}
 
     /// A number in [0, 1).
-    float next_1d() { return next_2d().x; }
+    [[gnu::always_inline]] float next_1d() { return next_2d().x; }
 
     /// A point in [0, 1)^2.
-    Vec2 next_2d() {
+    [[gnu::always_inline]] Vec2 next_2d() {
         const std::uint32_t pair = pair_++;
-        const std::uint64_t bits = detail::mix64(key_ + pair * 0xd1342543de82ef95u);
-        auto a = static_cast<std::uint32_t>(bits);
-        auto b = static_cast<std::uint32_t>(bits >> 32);
-        if (pair < points_->pairs_) [[likely]] {
-            a = detail::reverse_bits(detail::owen_scramble_reversed(points_->reversed_[2 * pair], a));
-            b = detail::reverse_bits(detail::owen_scramble_reversed(points_->reversed_[2 * pair + 1], b));
-        } else if (points_->pairs_ != 0) {
-            const std::uint64_t fresh = detail::mix64(bits ^ points_->iteration_);
-            a = static_cast<std::uint32_t>(fresh);
-            b = static_cast<std::uint32_t>(fresh >> 32);
-        }
-        return {detail::to_unit_float(a), detail::to_unit_float(b)};
+        std::uint64_t bits = detail::fold_multiply(key_ + pair * 0xa0761d6478bd642fu);
+        IterationPoints::Point base{0, 0};
+        if (pair < points_->pairs_) [[likely]]
+            base = points_->points_[pair];
+        else if (points_->pairs_ != 0)
+            bits = detail::mix64(bits ^ points_->iteration_);
+        return {detail::to_unit_float(base.x ^ static_cast<std::uint32_t>(bits)),
+                detail::to_unit_float(base.y ^ static_cast<std::uint32_t>(bits >> 32))};
     }
 
 private:

@@ -1,8 +1,9 @@
 #pragma once
 
-// Maps from the unit square to the domains that rendering samples. All keep areas in proportion and neighbours together, so
-// that stratified numbers stay stratified. None calls the maths library for more than a square root: the results are the
-// same bits on every platform that rounds as IEEE 754 asks, and the maps are cheap enough for the innermost loops.
+// Maps from the unit square to the domains that rendering samples. All are continuous and spread their density evenly, so
+// that stratified numbers stay stratified. None calls the maths library for more than a square root: results are the same
+// bits wherever floats follow IEEE 754 and the compiler does not fuse products into sums (-ffp-contract=off), and the
+// maps are cheap enough for the innermost loops.
 
 #include <lightswitch/core/math.hpp>
 #include <lightswitch/core/pdf.hpp>
@@ -31,12 +32,13 @@ struct DiskPoint {
 
 /// The work of `concentric_disk`. In each quarter of the square the larger coordinate is the radius and the ratio of
 /// the two is the angle from the nearest axis; min, max and a mask take the place of the four cases.
-inline DiskPoint concentric(const Vec2& u) {
+[[gnu::always_inline]] inline DiskPoint concentric(const Vec2& u) {
     const float a = 2 * u.x - 1, b = 2 * u.y - 1;
     const float abs_a = std::abs(a), abs_b = std::abs(b);
     const float radius = std::max(abs_a, abs_b);
     // The centre has no angle: any positive divisor serves.
-    const auto [c, s] = cos_sin_quarter_pi(std::min(abs_a, abs_b) / std::max(radius, std::numeric_limits<float>::min()));
+    const auto [c, s] =
+        cos_sin_quarter_pi(std::min(abs_a, abs_b) / std::max(radius, std::numeric_limits<float>::min()));
     const std::uint32_t near_x = 0u - static_cast<std::uint32_t>(abs_a > abs_b);
     const std::uint32_t c_bits = std::bit_cast<std::uint32_t>(c), s_bits = std::bit_cast<std::uint32_t>(s);
     const std::uint32_t swap = (c_bits ^ s_bits) & ~near_x;
@@ -46,8 +48,8 @@ inline DiskPoint concentric(const Vec2& u) {
 
 }  // namespace detail
 
-/// Uniform on the unit disk for uniform `u` in [0,1)^2 (Shirley and Chiu, "A Low Distortion Map Between Disk and Square",
-/// JGT 1997). Density 1/pi.
+/// Uniform on the unit disk for uniform `u` in [0,1)^2 (Shirley and Chiu, "A Low Distortion Map Between Disk and
+/// Square", JGT 1997). Density 1/pi.
 inline Vec2 concentric_disk(const Vec2& u) { return detail::concentric(u).point; }
 
 /// Uniform on the disk of that radius.
@@ -56,7 +58,7 @@ inline AreaPdf uniform_disk_pdf(float radius = 1) { return {inv_pi / (radius * r
 
 /// Unit vector around +z with density cos/pi (Malley's method: the concentric disk lifted onto the hemisphere). z is
 /// always above 0.
-inline Vec3 cosine_hemisphere(const Vec2& u) {
+[[gnu::always_inline]] inline Vec3 cosine_hemisphere(const Vec2& u) {
     const auto [p, height_squared] = detail::concentric(u);
     // On the rim, which 24-bit numbers reach, z takes the smallest value that a neighbour off the rim has.
     return {p.x, p.y, std::sqrt(std::max(height_squared, 0x1p-23f))};
@@ -72,8 +74,8 @@ inline Vec3 uniform_sphere(const Vec2& u) {
 }
 inline SolidAnglePdf uniform_sphere_pdf() { return {0.25f * inv_pi}; }
 
-/// Uniform unit vector in the cone around +z of half angle theta_max, given as 1 - cos(theta_max) in (0, 2], which keeps its
-/// digits however narrow the cone is.
+/// Uniform unit vector in the cone around +z of half angle theta_max, given as 1 - cos(theta_max) in (0, 2], which
+/// keeps its digits however narrow the cone is.
 inline Vec3 uniform_cone(const Vec2& u, float one_minus_cos_theta_max) {
     const auto [p, height_squared] = detail::concentric(u);
     const float one_minus_z = one_minus_cos_theta_max * (1 - height_squared);
@@ -85,8 +87,9 @@ inline SolidAnglePdf uniform_cone_pdf(float one_minus_cos_theta_max) {
     return {0.5f * inv_pi / one_minus_cos_theta_max};
 }
 
-/// Uniform point of a triangle: the first two barycentric coordinates, each at least 0, with sum at most 1. Each half of
-/// the square is sheared onto half of the triangle (Heitz, "A Low-Distortion Map Between Triangle and Square", 2019).
-inline Vec2 uniform_triangle(const Vec2& u) { return u - 0.5f * std::min(u.x, u.y); }
+/// Uniform point of a triangle: the first two barycentric coordinates, each at least 0, with sum at most 1. Each half
+/// of the square is sheared onto half of the triangle (Heitz, "A Low-Distortion Map Between Triangle and Square",
+/// 2019).
+[[gnu::always_inline]] inline Vec2 uniform_triangle(const Vec2& u) { return u - 0.5f * std::min(u.x, u.y); }
 
 }  // namespace lightswitch

@@ -9,7 +9,9 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -127,7 +129,7 @@ public:
     }
 
     /// Closest hit between `ray.near` and `ray.far`; false when there is none.
-    bool intersect(const Ray& ray, Hit& hit) const {
+    [[gnu::always_inline]] bool intersect(const Ray& ray, Hit& hit) const {
         RTCRayHit query;
         set(query.ray, ray);
         query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -139,7 +141,7 @@ public:
     }
 
     /// Whether anything lies between `ray.near` and `ray.far`.
-    bool occluded(const Ray& ray) const {
+    [[gnu::always_inline]] bool occluded(const Ray& ray) const {
         RTCRay query;
         set(query, ray);
         ++ray_count.occluded;
@@ -147,6 +149,7 @@ public:
         return query.tfar < 0;
     }
 
+    RTCScene handle() const { return scene_.get(); }
     double build_seconds() const { return build_seconds_; }
     std::int64_t memory() const { return device_.memory(); }
 
@@ -176,15 +179,14 @@ private:
         device_.check("adding a geometry");
     }
 
-    static void set(RTCRay& query, const Ray& ray) {
-        query.org_x = ray.origin.x;
-        query.org_y = ray.origin.y;
-        query.org_z = ray.origin.z;
-        query.tnear = ray.near;
-        query.dir_x = ray.direction.x;
-        query.dir_y = ray.direction.y;
-        query.dir_z = ray.direction.z;
-        query.time = 0;
+    /// Writes origin and direction as whole vectors: Embree reads them so, and a read of four separate writes would stall.
+    [[gnu::always_inline]] static void set(RTCRay& query, const Ray& ray) {
+        using Four [[gnu::vector_size(16)]] = float;
+        const Four origin{ray.origin.x, ray.origin.y, ray.origin.z, ray.near};
+        const Four direction{ray.direction.x, ray.direction.y, ray.direction.z, 0};
+        static_assert(offsetof(RTCRay, tnear) == 12 && offsetof(RTCRay, dir_x) == 16 && offsetof(RTCRay, time) == 28);
+        std::memcpy(&query, &origin, sizeof origin);
+        std::memcpy(&query.dir_x, &direction, sizeof direction);
         query.tfar = ray.far;
         query.mask = 0xffffffffu;
         query.id = 0;

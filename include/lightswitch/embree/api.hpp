@@ -19,7 +19,7 @@
 namespace lightswitch::embree {
 
 /// Closest hit of `ray_hit.ray`, written to `ray_hit`.
-inline void intersect(RTCScene scene, RTCRayHit& ray_hit) {
+[[gnu::always_inline]] inline void intersect(RTCScene scene, RTCRayHit& ray_hit) {
 #if LIGHTSWITCH_EMBREE_MAJOR >= 4
     rtcIntersect1(scene, &ray_hit, nullptr);
 #else
@@ -30,7 +30,7 @@ inline void intersect(RTCScene scene, RTCRayHit& ray_hit) {
 }
 
 /// Sets `ray.tfar` to minus infinity when anything is hit.
-inline void occluded(RTCScene scene, RTCRay& ray) {
+[[gnu::always_inline]] inline void occluded(RTCScene scene, RTCRay& ray) {
 #if LIGHTSWITCH_EMBREE_MAJOR >= 4
     rtcOccluded1(scene, &ray, nullptr);
 #else

@@ -79,7 +79,8 @@ inline std::string plain_exr(const ExrLayout& layout) {
     return out;
 }
 
-/// Reads the channels R, G and B of a scan line file, 16 or 32 bits, uncompressed or RLE, ZIP, ZIPS, PIZ.
+/// Reads the channels R, G and B of a scan line file, 16 or 32 bits, uncompressed or RLE, ZIP, ZIPS, PIZ. Only ZIP and
+/// ZIPS carry a checksum: damage to the values themselves can pass unnoticed in the others.
 inline Image decode_exr(std::string_view bytes, const std::string& file) {
     const Origin where = file_origin(file);
     const ExrLayout layout = read_exr_layout(bytes, file);
@@ -110,6 +111,7 @@ inline Image decode_exr(std::string_view bytes, const std::string& file) {
     for (int i = 0; i < exr.header.num_channels; ++i)
         if (exr.header.pixel_types[i] == TINYEXR_PIXELTYPE_HALF)
             exr.header.requested_pixel_types[i] = TINYEXR_PIXELTYPE_FLOAT;
+    exr.image.num_channels = exr.header.num_channels;  // tinyexr sets it at the end only, and leaks planes without it
     if (LoadEXRImageFromMemory(&exr.image, &exr.header, data, size, &message) != TINYEXR_SUCCESS) {
         InitEXRImage(&exr.image);  // what it held is freed already, but the pointers are left in it
         fail_exr(where, message);

@@ -14,11 +14,12 @@ namespace lightswitch {
 
 namespace detail {
 
-/// The positive half of the Gaussian of standard deviation 1, cut off at 4 and shifted to be 0 there, at equidistant knots.
+/// The positive half of the Gaussian of standard deviation 1, cut off at 4 and shifted to be 0 there, at equidistant
+/// knots.
 ///
-/// Its distribution has no closed inverse. It is inverted by finding the cell, whose probability is exact, and taking the
-/// density as linear within it; the distribution then errs by less than 1e-6. Computed at compile time, without the
-/// platform's maths library, so that samples are the same bits everywhere.
+/// Its distribution has no closed inverse. It is inverted by finding the cell, whose probability is exact, and taking
+/// the density as linear within it; the distribution then errs by less than 1e-6. Computed at compile time, without the
+/// platform's maths library, so that the table is the same everywhere.
 struct GaussianTable {
     static constexpr int cells = 64;
     static constexpr double cutoff = 4, width = cutoff / cells;
@@ -95,7 +96,8 @@ public:
         return "gaussian";
     }
 
-    /// Why the radius is impossible, in words, or an empty string. Beyond 64 pixels neighbouring pixels differ by noise only.
+    /// Why the radius is impossible, in words, or an empty string. Beyond 64 pixels neighbouring pixels differ by noise
+    /// only.
     std::string problem() const {
         if (radius_ > 0 && radius_ <= 64) return {};
         return "a filter radius of " + std::to_string(radius_) + " pixels is not above 0 and at most 64" +

@@ -21,7 +21,7 @@ struct ConstantEnvironment {
         return {.wi = wi, .radiance = value, .pdf = uniform_sphere_pdf(), .dirac = false, .visibility = from.spawn(wi)};
     }
 
-    SolidAnglePdf pdf(const SurfacePoint&, const Vec3&) const { return uniform_sphere_pdf(); }
+    SolidAnglePdf pdf(const Vec3&) const { return uniform_sphere_pdf(); }
 };
 
 }  // namespace lightswitch

@@ -31,19 +31,19 @@ concept Light = requires(const L light, const SurfacePoint point, const Vec2 u) 
     { light.power() } -> std::convertible_to<double>;
 };
 
-/// A light with a surface, which rays can hit. `pdf` is the density with which `sample` at `from` chooses the direction `wi`
-/// to the point `hit` on the light; `emitted` the radiance that leaves it.
+/// A light with a surface, which rays can hit. `pdf(from, wi, hit)` is the density with which `sample` at the
+/// position `from` chooses the direction `wi` to the point `hit` on the light; `emitted` the radiance that leaves it.
 template <class L>
-concept AreaLight = Light<L> && requires(const L light, const SurfacePoint point, const Vec3 direction) {
+concept AreaLight = Light<L> && requires(const L light, const SurfacePoint point, const Vec3 position, const Vec3 direction) {
     { light.emitted(point, direction) } -> std::same_as<Rgb>;
-    { light.pdf(point, direction, point) } -> std::same_as<SolidAnglePdf>;
+    { light.pdf(position, direction, point) } -> std::same_as<SolidAnglePdf>;
 };
 
 /// A light that surrounds the scene. `radiance(wi)` arrives from the direction `wi`, chosen by `sample` with density `pdf`.
 template <class L>
-concept EnvironmentLight = Light<L> && requires(const L light, const SurfacePoint point, const Vec3 direction) {
+concept EnvironmentLight = Light<L> && requires(const L light, const Vec3 direction) {
     { light.radiance(direction) } -> std::same_as<Rgb>;
-    { light.pdf(point, direction) } -> std::same_as<SolidAnglePdf>;
+    { light.pdf(direction) } -> std::same_as<SolidAnglePdf>;
 };
 
 }  // namespace lightswitch

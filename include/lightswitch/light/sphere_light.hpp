@@ -44,10 +44,10 @@ struct SphereLight {
                 .visibility = from.segment_to(center + (radius + offset) * normal)};
     }
 
-    SolidAnglePdf pdf(const SurfacePoint& from, const Vec3& wi, const SurfacePoint& hit) const {
-        const float distance2 = length_squared(center - from.position);
+    SolidAnglePdf pdf(const Vec3& from, const Vec3& wi, const SurfacePoint& hit) const {
+        const float distance2 = length_squared(center - from);
         if (distance2 > square(radius)) return uniform_cone_pdf(cone(distance2));
-        return to_solid_angle(area_pdf(), length_squared(hit.position - from.position), std::abs(dot(wi, hit.normal)));
+        return to_solid_angle(area_pdf(), length_squared(hit.position - from), std::abs(dot(wi, hit.normal)));
     }
 
 private:

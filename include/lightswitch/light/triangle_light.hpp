@@ -12,16 +12,16 @@ struct TriangleLight {
     Vec3 corner, edge1, edge2;
     Vec3 normal;  ///< unit, on the emitting side
     Rgb emission;
-    float area;
+    AreaPdf density;  ///< one over the area
     float offset;  ///< as in `SurfacePoint`
 
-    double power() const { return double(luminance(emission)) * double(area) * double(pi); }
+    double power() const { return double(luminance(emission)) * double(pi) / double(density.value); }
 
     Rgb emitted(const SurfacePoint& at, const Vec3& direction) const {
         return dot(at.normal, direction) > 0 ? emission : Rgb(0);
     }
 
-    LightSample sample(const SurfacePoint& from, const Vec2& u) const {
+    [[gnu::always_inline]] LightSample sample(const SurfacePoint& from, const Vec2& u) const {
         const Vec2 b = uniform_triangle(u);
         const Vec3 position = corner + b.x * edge1 + b.y * edge2;
         const Vec3 to_light = position - from.position;
@@ -31,14 +31,14 @@ struct TriangleLight {
         if (!(cosine > 0)) return {};
         return {.wi = wi,
                 .radiance = emission,
-                .pdf = to_solid_angle(AreaPdf{1 / area}, distance2, cosine),
+                .pdf = to_solid_angle(density, distance2, cosine),
                 .dirac = false,
                 .visibility = from.segment_to(position + offset * normal)};
     }
 
-    SolidAnglePdf pdf(const SurfacePoint& from, const Vec3& wi, const SurfacePoint& hit) const {
-        const float distance2 = length_squared(hit.position - from.position);
-        return to_solid_angle(AreaPdf{1 / area}, distance2, std::abs(dot(wi, hit.normal)));
+    [[gnu::always_inline]] SolidAnglePdf pdf(const Vec3& from, const Vec3& wi, const SurfacePoint& hit) const {
+        const float distance2 = length_squared(hit.position - from);
+        return to_solid_angle(density, distance2, std::abs(dot(wi, hit.normal)));
     }
 };
 

@@ -141,8 +141,8 @@ private:
         if (!number) fail(origin_, quote(word) + " is not an index");
         const auto count = static_cast<std::int64_t>(size);
         if (*number == 0 || *number > count || *number < -count)
-            fail(origin_, std::string(what) + " " + std::to_string(*number) + " does not exist: " + std::to_string(count) +
-                              (count == 1 ? " is" : " are") + " defined above");
+            fail(origin_, std::string(what) + " " + std::to_string(*number) + " does not exist: " +
+                              std::to_string(count) + (count == 1 ? " is" : " are") + " defined above");
         return *number > 0 ? *number - 1 : count + *number;
     }
 
@@ -162,8 +162,8 @@ private:
         return entry->second;
     }
 
-    static constexpr std::array<std::string_view, 13> skipped{"o",      "g",      "s",   "mg",    "usemtl",     "usemap", "mtllib",
-                                                              "lod",    "bevel",  "l",   "p",     "shadow_obj", "trace_obj"};
+    static constexpr std::array<std::string_view, 13> skipped{
+        "o", "g", "s", "mg", "usemtl", "usemap", "mtllib", "lod", "bevel", "l", "p", "shadow_obj", "trace_obj"};
 
     Origin origin_;
     FileNormals use_;

@@ -27,7 +27,7 @@ namespace detail {
 class PlyData {
 public:
     PlyData(std::string_view bytes, const PlyHeader& header, std::string file)
-        : rest_(bytes.substr(header.bytes)), format_(header.format), line_(header.lines), file_(std::move(file)) {}
+        : rest_(bytes.substr(header.bytes)), format_(header.format), line_(header.lines + 1), file_(std::move(file)) {}
 
     /// Names the element that is read next, for errors.
     void begin(const PlyElement& element, std::size_t index) {
@@ -52,7 +52,8 @@ public:
         // One more byte: the last word of an ASCII file needs no separator after it.
         if (least > 0 && element.count > (rest_.size() + 1) / least)
             fail({file_, element.line, {}}, std::to_string(element.count) + " of the element " + quote(element.name) +
-                                                " cannot be in the " + std::to_string(rest_.size()) + " bytes that follow");
+                                                " cannot be in the " + std::to_string(rest_.size()) +
+                                                " bytes that follow");
     }
 
     void check_end() {
@@ -127,9 +128,9 @@ private:
             }
             case PlyType::float64: break;
         }
-        constexpr std::uint64_t exponent = 0x7ff0000000000000u;
-        if ((bits & exponent) == exponent) error("a number is not finite");
-        return std::bit_cast<double>(bits);
+        const double value = std::bit_cast<double>(bits);
+        if (!has_finite_bits(value)) error("a number is not finite");
+        return value;
     }
 
     std::string_view rest_;
@@ -143,7 +144,10 @@ private:
 class PlyReader {
 public:
     PlyReader(std::string_view bytes, std::string file, FileNormals use)
-        : header_(PlyHeaderReader(file).read(bytes)), data_(bytes, header_, file), origin_{std::move(file), 0, {}}, use_(use) {}
+        : header_(PlyHeaderReader(file).read(bytes)),
+          data_(bytes, header_, file),
+          origin_{std::move(file), 0, {}},
+          use_(use) {}
 
     Mesh read() {
         for (const PlyElement& element : header_.elements) {
@@ -186,7 +190,8 @@ private:
     }
 
     void faces(const PlyElement& element) {
-        const auto place = element.find("vertex_indices") ? element.find("vertex_indices") : element.find("vertex_index");
+        const auto place =
+            element.find("vertex_indices") ? element.find("vertex_indices") : element.find("vertex_index");
         if (!place || !element.properties[*place].count_type || element.properties[*place].type >= PlyType::float32)
             fail({origin_.file, element.line, {}}, "the faces have no list of integers called \"vertex_indices\"");
         if (mesh_.positions.empty()) fail({origin_.file, element.line, {}}, "there are no vertices before the faces");
@@ -205,13 +210,15 @@ private:
 
     void polygon(const PlyProperty& property, std::vector<bool>& used) {
         const double corners = data_.next(*property.count_type);
-        if (corners < 3) data_.error("a face needs at least 3 corners, not " + std::to_string(static_cast<int>(corners)));
+        if (corners < 3)
+            data_.error("a face needs at least 3 corners, not " + std::to_string(static_cast<int>(corners)));
         std::array<std::uint32_t, 3> triangle{};
         for (double c = 0; c < corners; ++c) {
             const double index = data_.next(property.type);
             if (index < 0 || index >= static_cast<double>(mesh_.positions.size()))
-                data_.error("vertex " + std::to_string(static_cast<std::int64_t>(index)) + " does not exist: there are " +
-                            std::to_string(mesh_.positions.size()) + " (counted from 0)");
+                data_.error("vertex " + std::to_string(static_cast<std::int64_t>(index)) +
+                            " does not exist: there are " + std::to_string(mesh_.positions.size()) +
+                            " (counted from 0)");
             const auto vertex = static_cast<std::uint32_t>(index);
             if (!mesh_.normals.empty() && mesh_.normals[vertex] == DVec3(0))
                 data_.error("the normal of vertex " + std::to_string(vertex) + " has no direction");

@@ -124,9 +124,14 @@ private:
     }
 
     PlyType type(std::string_view name) {
-        static constexpr std::array<std::array<std::string_view, 2>, 8> names{
-            {{"char", "int8"}, {"uchar", "uint8"}, {"short", "int16"}, {"ushort", "uint16"},
-             {"int", "int32"}, {"uint", "uint32"}, {"float", "float32"}, {"double", "float64"}}};
+        static constexpr std::array<std::array<std::string_view, 2>, 8> names{{{"char", "int8"},
+                                                                               {"uchar", "uint8"},
+                                                                               {"short", "int16"},
+                                                                               {"ushort", "uint16"},
+                                                                               {"int", "int32"},
+                                                                               {"uint", "uint32"},
+                                                                               {"float", "float32"},
+                                                                               {"double", "float64"}}};
         for (std::size_t i = 0; i < names.size(); ++i)
             if (name == names[i][0] || name == names[i][1]) return static_cast<PlyType>(i);
         fail(origin_, quote(name) + " is not a PLY type");

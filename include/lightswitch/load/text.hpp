@@ -14,6 +14,12 @@
 
 namespace lightswitch::detail {
 
+/// True when `value` is neither infinite nor NaN; reads the bits, so that it also works under -ffast-math.
+inline bool has_finite_bits(double value) {
+    constexpr std::uint64_t exponent = 0x7ff0000000000000u;
+    return (std::bit_cast<std::uint64_t>(value) & exponent) != exponent;
+}
+
 /// The finite number that `word` spells, from its first to its last character, or nothing. Decimal or scientific notation
 /// whatever the locale; a leading plus is allowed.
 std::optional<double> parse_number(std::string_view word);
@@ -22,6 +28,9 @@ std::optional<std::int64_t> parse_integer(std::string_view word);
 
 /// Cuts the first word off `text`; empty at the end. Words are separated by any of `separators`.
 std::string_view next_word(std::string_view& text, std::string_view separators = " \t\r\n");
+
+/// `text` with A to Z replaced by a to z.
+std::string lower_case(std::string_view text);
 
 /// `text` fit for an error message: one line of printable ASCII, shortened when it is long.
 std::string shown(std::string_view text);
@@ -44,9 +53,7 @@ inline std::optional<double> parse_number(std::string_view word) {
     double value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error != std::errc() || end != word.data() + word.size()) return {};
-    // From the bits, so that "inf" and "nan" are also refused under -ffast-math.
-    constexpr std::uint64_t exponent = 0x7ff0000000000000u;
-    if ((std::bit_cast<std::uint64_t>(value) & exponent) == exponent) return {};
+    if (!has_finite_bits(value)) return {};
     return value;
 }
 
@@ -66,6 +73,13 @@ inline std::string_view next_word(std::string_view& text, std::string_view separ
     return word;
 }
 
+inline std::string lower_case(std::string_view text) {
+    std::string result(text);
+    for (char& c : result)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return result;
+}
+
 inline std::string shown(std::string_view text) {
     constexpr std::size_t longest = 60;
     std::string result(text.substr(0, longest));
@@ -77,7 +91,8 @@ inline std::string shown(std::string_view text) {
 inline std::string quote(std::string_view text) { return "\"" + shown(text) + "\""; }
 
 inline LineIndex::LineIndex(std::string_view text) {
-    for (std::size_t i = text.find('\n'); i != std::string_view::npos; i = text.find('\n', i + 1)) newlines_.push_back(i);
+    for (std::size_t i = text.find('\n'); i != std::string_view::npos; i = text.find('\n', i + 1))
+        newlines_.push_back(i);
 }
 
 inline int LineIndex::line(std::size_t offset) const {

@@ -31,6 +31,8 @@ public:
     /// Throws unless `node` has each of the `required` attributes, at most the `optional` ones besides, and none twice.
     void check_attributes(pugi::xml_node node, std::initializer_list<std::string_view> required,
                           std::initializer_list<std::string_view> optional = {}) const;
+    /// Throws when there is an element inside `node`.
+    void check_childless(pugi::xml_node node) const;
 
 private:
     static constexpr std::uintmax_t max_bytes = std::uintmax_t(16) << 20;
@@ -72,7 +74,8 @@ inline XmlFile::XmlFile(const std::filesystem::path& path, const std::map<std::s
         prepare(node, 1);
     }
     if (!root()) fail({file_, 0, {}}, "contains no XML element");
-    if (!unused_.empty()) fail({file_, 0, {}}, "the parameter " + quote(*unused_.begin()) + " is set, but the file does not use it");
+    if (!unused_.empty())
+        fail({file_, 0, {}}, "the parameter " + quote(*unused_.begin()) + " is set, but the file does not use it");
 }
 
 inline Origin XmlFile::origin(pugi::xml_node node) const {
@@ -105,12 +108,18 @@ inline void XmlFile::check_attributes(pugi::xml_node node, std::initializer_list
         if (!seen.contains(name)) fail(origin(node), "the attribute " + quote(name) + " is missing");
 }
 
+inline void XmlFile::check_childless(pugi::xml_node node) const {
+    for (const pugi::xml_node child : node.children())
+        if (child.type() == pugi::node_element) fail(origin(child), "does not belong into " + origin(node).element);
+}
+
 /// Checks the tree below `node` and replaces `$name` in it, in the order of the file, since a default holds from where it
 /// stands.
 inline void XmlFile::prepare(pugi::xml_node node, int depth) {
     if (node.type() == pugi::node_pcdata || node.type() == pugi::node_cdata) {
+        std::string_view text = node.value();
         const auto parent = node.parent();
-        fail(parent == document_ ? Origin{file_, 0, {}} : origin(parent), "unexpected text " + quote(node.value()));
+        fail(parent == document_ ? Origin{file_, 0, {}} : origin(parent), "unexpected text " + quote(next_word(text)));
     }
     if (node.type() != pugi::node_element) return;
     if (depth > max_depth) fail(origin(node), "elements are nested more than " + std::to_string(max_depth) + " deep");
@@ -132,7 +141,8 @@ inline void XmlFile::define(pugi::xml_node node) {
     check_attributes(node, {"name", "value"});
     const std::string name = node.attribute("name").value();
     if (name.empty() || name.find_first_not_of(name_characters) != std::string::npos || name.size() > longest_name)
-        fail(origin(node), "the name must be 1 to " + std::to_string(longest_name) + " letters, digits and underscores");
+        fail(origin(node),
+             "the name must be 1 to " + std::to_string(longest_name) + " letters, digits and underscores");
     values_.emplace(name, node.attribute("value").value());
 }
 
@@ -152,7 +162,8 @@ inline std::string XmlFile::substituted(pugi::xml_node node, std::string_view va
         const std::string_view word = value.substr(0, value.find_first_not_of(name_characters));
         std::size_t length = std::min(word.size(), longest_name);
         auto match = values_.end();
-        for (; length > 0 && match == values_.end(); --length) match = values_.find(std::string(value.substr(0, length)));
+        for (; length > 0 && match == values_.end(); --length)
+            match = values_.find(std::string(value.substr(0, length)));
         if (match == values_.end())
             fail(origin(node), "the parameter " + quote("$" + std::string(word)) +
                                    " is not defined: give it a <default> above, or set it when loading");
@@ -160,7 +171,8 @@ inline std::string XmlFile::substituted(pugi::xml_node node, std::string_view va
         value.remove_prefix(match->first.size());
         result += match->second;
         substituted_bytes_ += match->second.size();
-        if (substituted_bytes_ > max_bytes) fail(origin(node), "replacing parameters makes the file longer than 16 MiB");
+        if (substituted_bytes_ > max_bytes)
+            fail(origin(node), "replacing parameters makes the file longer than 16 MiB");
     }
     return result;
 }

@@ -5,12 +5,9 @@
 
 #include <lightswitch/core/math.hpp>
 #include <lightswitch/load/xml.hpp>
-#include <lightswitch/scene/description.hpp>
+#include <lightswitch/load/xml_transform.hpp>
 
 namespace lightswitch::detail {
-
-/// The matrix of a `<transform>`: its operations in the order of the file. Throws unless it is affine and invertible.
-DMat4 read_transform(const XmlFile& file, pugi::xml_node node);
 
 /// An object element, such as `<shape type="sphere">`. Functions that read a parameter throw `Error` when it has the wrong
 /// type or a malformed value.
@@ -29,6 +26,9 @@ public:
     }
 
     bool has(const std::string& name) const { return parameters_.contains(name); }
+    bool has_string(const std::string& name) const {
+        return has(name) && std::string_view(parameters_.at(name).name()) == "string";
+    }
     /// Place of a parameter that is there.
     Origin origin(const std::string& name) const { return file_.origin(parameters_.at(name)); }
 
@@ -54,7 +54,6 @@ public:
 private:
     /// The parameter's element if it is there; throws when its tag is none of `tags`.
     pugi::xml_node find(const std::string& name, std::initializer_list<std::string_view> tags);
-    double parse(pugi::xml_node node, std::string_view word) const;
 
     const XmlFile& file_;
     pugi::xml_node node_;
@@ -63,132 +62,124 @@ private:
     std::set<std::string> asked_;
 };
 
-/// The numbers in an attribute, separated by spaces or commas. Throws unless each is finite and there are as many as one of
-/// `counts` says.
-inline std::vector<double> read_numbers(const XmlFile& file, pugi::xml_node node, const char* attribute,
-                                        std::initializer_list<std::size_t> counts) {
-    std::string_view text = node.attribute(attribute).value();
-    std::vector<double> result;
-    const auto fits = [&] { return std::find(counts.begin(), counts.end(), result.size()) != counts.end(); };
-    for (std::string_view word = next_word(text, " ,\t\r\n"); !word.empty(); word = next_word(text, " ,\t\r\n")) {
-        const auto number = parse_number(word);
-        if (!number) fail(file.origin(node), quote(word) + " is not a finite number");
-        result.push_back(*number);
-    }
-    if (fits()) return result;
-    std::string expected;
-    for (const std::size_t count : counts) expected += (expected.empty() ? "" : " or ") + std::to_string(count);
-    fail(file.origin(node), std::string("the attribute \"") + attribute + "\" needs " + expected + " numbers, not " +
-                                std::to_string(result.size()));
-}
-
-/// `value` with one or three numbers, or x, y and z of which each may be left out when there is an `otherwise`.
-inline DVec3 read_vector(const XmlFile& file, pugi::xml_node node, std::optional<double> otherwise) {
-    if (node.attribute("value")) {
-        for (const char* axis : {"x", "y", "z"})
-            if (node.attribute(axis)) fail(file.origin(node), "give either \"value\" or x, y and z");
-        const auto numbers = read_numbers(file, node, "value", {1, 3});
-        return numbers.size() == 1 ? DVec3(numbers[0]) : DVec3(numbers[0], numbers[1], numbers[2]);
-    }
-    DVec3 result(otherwise.value_or(0));
-    const char* const axes[] = {"x", "y", "z"};
-    for (int i = 0; i < 3; ++i) {
-        if (node.attribute(axes[i])) result[i] = read_numbers(file, node, axes[i], {1})[0];
-        else if (!otherwise) fail(file.origin(node), std::string("the attribute \"") + axes[i] + "\" is missing");
-    }
-    return result;
-}
-
-inline DMat4 rotation(const DVec3& axis, double degrees) {
-    const double angle = degrees * std::numbers::pi / 180, c = std::cos(angle), s = std::sin(angle);
-    DMat4 result(1);
-    for (int i = 0; i < 3; ++i) {
-        DVec3 e(0);
-        e[i] = 1;
-        // Rodrigues' formula for the image of each coordinate axis.
-        result[i] = glm::dvec4(c * e + s * glm::cross(axis, e) + (1 - c) * axis[i] * axis, 0);
-    }
-    return result;
-}
-
-inline DMat4 read_transform_step(const XmlFile& file, pugi::xml_node node) {
-    const std::string_view tag = node.name();
-    DMat4 result(1);
-    if (tag == "translate") {
-        file.check_attributes(node, {}, {"value", "x", "y", "z"});
-        result[3] = glm::dvec4(read_vector(file, node, 0), 1);
-    } else if (tag == "scale") {
-        file.check_attributes(node, {}, {"value", "x", "y", "z"});
-        const DVec3 factors = read_vector(file, node, 1);
-        for (int i = 0; i < 3; ++i) result[i][i] = factors[i];
-    } else if (tag == "rotate") {
-        file.check_attributes(node, {"angle"}, {"value", "x", "y", "z"});
-        const DVec3 axis = read_vector(file, node, 0);
-        const double length = glm::length(axis);
-        if (!(std::abs(length - 1) < 1e-3))  // Mitsuba would use it as it is, which is not a rotation
-            fail(file.origin(node), "the rotation axis has length " + std::to_string(length) + ": give a unit vector");
-        result = rotation(axis / length, read_numbers(file, node, "angle", {1})[0]);
-    } else if (tag == "lookat") {
-        file.check_attributes(node, {"origin", "target"}, {"up"});
-        const auto vector = [&](const char* name) {
-            const auto n = read_numbers(file, node, name, {3});
-            return DVec3(n[0], n[1], n[2]);
-        };
-        const DVec3 eye = vector("origin"), target = vector("target");
-        DVec3 up = node.attribute("up") ? vector("up") : DVec3(0);
-        if (up == DVec3(0)) up = DVec3(Basis(normalize(Vec3(glm::normalize(target - eye)))).tangent);  // as in Mitsuba
-        try {
-            result = CameraDescription::look_at(eye, target, up);
-        } catch (const Error& error) {
-            fail(file.origin(node), error.what());
-        }
-    } else if (tag == "matrix") {
-        file.check_attributes(node, {"value"});
-        const auto numbers = read_numbers(file, node, "value", {9, 16});
-        const std::size_t size = numbers.size() == 16 ? 4 : 3;
-        for (std::size_t i = 0; i < numbers.size(); ++i)
-            result[static_cast<int>(i % size)][static_cast<int>(i / size)] = numbers[i];
-        if (result[0].w != 0 || result[1].w != 0 || result[2].w != 0 || result[3].w != 1)
-            fail(file.origin(node), "the matrix is not affine: its last row must be 0 0 0 1");
-    } else {
-        fail(file.origin(node), "unknown transform; known are translate, scale, rotate, lookat and matrix");
-    }
-    if (const auto child = node.first_child(); child.type() == pugi::node_element)
-        fail(file.origin(child), "unexpected inside " + file.origin(node).element);
-    return result;
-}
-
-inline DMat4 read_transform(const XmlFile& file, pugi::xml_node node) {
-    DMat4 result(1);
-    for (const pugi::xml_node child : node.children())
-        if (child.type() == pugi::node_element) result = read_transform_step(file, child) * result;
-    const double determinant = linear_determinant(result);
-    if (determinant == 0 || !parse_number(std::to_string(determinant)))
-        fail(file.origin(node), "the transform cannot be inverted: it has a scale of 0, or overflows");
-    return result;
-}
-
 inline XmlElement::XmlElement(const XmlFile& file, pugi::xml_node node) : file_(file), node_(node) {
-    static const std::map<std::string_view, bool> tags{  // true for parameters, false for objects
-        {"float", true},   {"integer", true}, {"boolean", true}, {"string", true},   {"rgb", true},     {"spectrum", true},
-        {"point", true},   {"vector", true},  {"transform", true}, {"bsdf", false},  {"shape", false},  {"emitter", false},
-        {"sensor", false}, {"film", false},   {"rfilter", false}, {"sampler", false}, {"integrator", false}, {"ref", false}};
+    if (std::string_view(node.name()) == "scene") file.check_attributes(node, {"version"}, {"type", "id", "name"});
+    else file.check_attributes(node, {"type"}, {"id", "name"});
+
+    static const std::set<std::string_view> vectors{"point", "vector"},
+        values{"float", "integer", "boolean", "string", "rgb", "spectrum"},
+        objects{"bsdf", "shape", "emitter", "sensor", "film", "rfilter", "sampler", "integrator", "ref"};
     for (const pugi::xml_node child : node.children()) {
-        if (child.type() != pugi::node_element || std::string_view(child.name()) == "default") continue;
-        const auto tag = tags.find(child.name());
-        if (tag == tags.end()) fail(file.origin(child), "this element is not supported here");
-        if (!tag->second) {
+        const std::string_view tag = child.name();
+        if (child.type() != pugi::node_element || tag == "default") continue;
+        if (objects.contains(tag)) {
             objects_.push_back(child);
             continue;
         }
-        const std::string_view name = child.name();
-        if (name == "point" || name == "vector") file.check_attributes(child, {"name"}, {"value", "x", "y", "z"});
-        else if (name == "transform") file.check_attributes(child, {"name"});
-        else file.check_attributes(child, {"name", "value"});
+        if (values.contains(tag)) file.check_attributes(child, {"name", "value"});
+        else if (vectors.contains(tag)) file.check_attributes(child, {"name"}, {"value", "x", "y", "z"});
+        else if (tag == "transform") file.check_attributes(child, {"name"});
+        else fail(file.origin(child), "elements of this kind are not supported here");
+        if (tag != "transform") file.check_childless(child);
         if (!parameters_.emplace(child.attribute("name").value(), child).second)
-            fail(file.origin(child), "this parameter is given twice");
-        if (name != "transform")
-            if (const auto inner = child.first_child(); inner.type() == pugi::node_element)
-                fail(file.origin(inner), "unexpected inside a parameter");
+            fail(file.origin(child), "the parameter is given twice");
     }
 }
+
+inline pugi::xml_node XmlElement::find(const std::string& name, std::initializer_list<std::string_view> tags) {
+    asked_.insert(name);
+    const auto found = parameters_.find(name);
+    if (found == parameters_.end()) return {};
+    std::string expected;
+    for (const std::string_view tag : tags) {
+        if (tag == found->second.name()) return found->second;
+        expected += (expected.empty() ? "<" : " or <") + std::string(tag) + ">";
+    }
+    fail(file_.origin(found->second),
+         "has the wrong type: " + quote(name) + " of " + origin().element + " is a " + expected);
+}
+
+inline std::optional<double> XmlElement::number(const std::string& name) {
+    const auto node = find(name, {"float", "integer"});
+    if (!node) return {};
+    return read_numbers(file_, node, "value", {1})[0];
+}
+
+inline std::optional<int> XmlElement::integer(const std::string& name, int lowest, int highest) {
+    const auto node = find(name, {"integer"});
+    if (!node) return {};
+    std::string_view text = node.attribute("value").value();
+    const std::string_view word = next_word(text);
+    const auto value = parse_integer(word);
+    if (!value || !next_word(text).empty())
+        fail(file_.origin(node), quote(node.attribute("value").value()) + " is not an integer");
+    if (*value < lowest || *value > highest)
+        fail(file_.origin(node),
+             std::to_string(*value) + " is not between " + std::to_string(lowest) + " and " + std::to_string(highest));
+    return static_cast<int>(*value);
+}
+
+inline bool XmlElement::boolean(const std::string& name, bool otherwise) {
+    const auto node = find(name, {"boolean"});
+    if (!node) return otherwise;
+    const std::string value = lower_case(node.attribute("value").value());
+    if (value != "true" && value != "false") fail(file_.origin(node), quote(value) + " is neither true nor false");
+    return value == "true";
+}
+
+inline std::optional<std::string> XmlElement::text(const std::string& name) {
+    const auto node = find(name, {"string"});
+    if (!node) return {};
+    return node.attribute("value").value();
+}
+
+inline std::optional<DVec3> XmlElement::vector(const std::string& name) {
+    const auto node = find(name, {"point", "vector"});
+    if (!node) return {};
+    return read_vector(file_, node, {});
+}
+
+inline std::optional<DMat4> XmlElement::transform(const std::string& name) {
+    const auto node = find(name, {"transform"});
+    if (!node) return {};
+    return read_transform(file_, node);
+}
+
+inline Rgb XmlElement::color(const std::string& name, float otherwise, Color use) {
+    const auto node = find(name, {"rgb", "float", "integer", "spectrum"});
+    if (!node) return Rgb(otherwise);
+    const std::string_view tag = node.name();
+    if (tag == "spectrum" && std::string_view(node.attribute("value").value()).find(':') != std::string_view::npos)
+        fail(file_.origin(node), "a spectrum by wavelengths is not supported: give an <rgb>");
+    const auto numbers =
+        tag == "rgb" ? read_numbers(file_, node, "value", {1, 3}) : read_numbers(file_, node, "value", {1});
+    DVec3 color = numbers.size() == 1 ? DVec3(numbers[0]) : DVec3(numbers[0], numbers[1], numbers[2]);
+    // Constant spectral radiance is XYZ (1, 1, 1), whose sRGB coordinates these are (the row sums of the BT.709 matrix).
+    if (tag == "spectrum" && use == Color::emission) color *= DVec3(1.204794, 0.948292, 0.908916);
+    const Rgb result(color);
+    if (!lightswitch::is_finite(result)) fail(file_.origin(node), "the colour is too large");
+    return result;
+}
+
+inline std::vector<pugi::xml_node> XmlElement::objects(std::initializer_list<std::string_view> tags) {
+    std::vector<pugi::xml_node> result;
+    const auto wanted = [&](pugi::xml_node node) {
+        return std::find(tags.begin(), tags.end(), node.name()) != tags.end();
+    };
+    std::copy_if(objects_.begin(), objects_.end(), std::back_inserter(result), wanted);
+    std::erase_if(objects_, wanted);
+    return result;
+}
+
+inline void XmlElement::finish() const {
+    for (const auto& [name, node] : parameters_) {
+        if (asked_.contains(name)) continue;
+        std::string known;
+        for (const std::string& other : asked_) known += (known.empty() ? "; known are " : ", ") + other;
+        fail({file_.origin(node).file, file_.origin(node).line, origin().element},
+             "unknown parameter " + quote(name) + known);
+    }
+    if (!objects_.empty()) fail(file_.origin(objects_.front()), "does not belong into " + origin().element);
+}
+
+}  // namespace lightswitch::detail

@@ -5,8 +5,6 @@
 #include <lightswitch/method/roulette.hpp>
 #include <lightswitch/render/method.hpp>
 
-#include <optional>
-
 namespace lightswitch {
 
 /// Path tracing with next event estimation: at every vertex one point of one light is connected directly, and joined with the
@@ -21,14 +19,17 @@ struct PathTracerNee {
     Rgb radiance(const auto& scene, Ray ray, auto& sampler) const {
         Rgb sum(0), throughput(1);
         float eta = 1;
-        std::optional<SurfacePoint> previous;  // where light sampling could have found what the path meets next
-        SolidAnglePdf previous_pdf;            // and with which density the BSDF chose the direction instead
+        // What light sampling at the vertex before could have found is met with this density, from there; weight 1 when it
+        // could not: at the camera and after a specular bounce.
+        bool light_sampled = false;
+        SolidAnglePdf pdf;
+        Vec3 from;
         for (int depth = 1;; ++depth) {
             const auto hit = scene.intersect(ray);
             if (!hit) {
                 const Rgb radiance = scene.environment(ray.direction);
                 const float weight =
-                    previous ? power_heuristic(previous_pdf, scene.environment_pdf(*previous, ray.direction)) : 1;
+                    light_sampled ? power_heuristic(pdf, scene.environment_pdf(ray.direction)) : 1;
                 sum += throughput * radiance * weight;
                 break;
             }
@@ -37,7 +38,7 @@ struct PathTracerNee {
                 const Rgb radiance = scene.emitted(*hit, wo);
                 if (!is_black(radiance)) {
                     const float weight =
-                        previous ? power_heuristic(previous_pdf, scene.light_pdf(*previous, ray.direction, *hit)) : 1;
+                        light_sampled ? power_heuristic(pdf, scene.light_pdf(from, ray.direction, *hit)) : 1;
                     sum += throughput * radiance * weight;
                 }
             }
@@ -45,24 +46,20 @@ struct PathTracerNee {
 
             const Basis basis = hit->shading_frame();
             const Vec3 local_wo = basis.to_local(wo);
-            const Vec2 direction = sampler.next_2d(), choices = sampler.next_2d();
-            const Vec2 on_light = sampler.next_2d();
-            const float which_light = sampler.next_1d();
-            const auto scattered = scene.with_bsdf(*hit, [&](const auto& bsdf) {
+            // One number chooses the light and the lobe: they enter different terms of the sum, so nothing correlates.
+            const Vec2 direction = sampler.next_2d(), choices = sampler.next_2d(), on_light = sampler.next_2d();
+            const auto scattered = scene.with_bsdf(*hit, [&](const auto& bsdf) __attribute__((always_inline)) {
                 if constexpr (!std::remove_cvref_t<decltype(bsdf)>::specular)
-                    sum += throughput * direct(scene, *hit, basis, local_wo, bsdf, which_light, on_light);
+                    sum += throughput * direct(scene, *hit, basis, local_wo, bsdf, choices.x, on_light);
                 return bsdf.sample(local_wo, Vec3(direction, choices.x), Transport::radiance);
             });
             if (!scattered) break;
             throughput *= scattered->weight;
             eta *= scattered->eta;
             if (!survives_roulette(throughput, eta, depth, rr_depth, choices.y)) break;
-            if (scattered->specular) {
-                previous.reset();
-            } else {
-                previous = hit;
-                previous_pdf = scattered->pdf;
-            }
+            light_sampled = !scattered->specular;
+            pdf = scattered->pdf;
+            from = hit->position;
             ray = hit->spawn(basis.to_world(scattered->wi));
         }
         return sum;
@@ -70,7 +67,7 @@ struct PathTracerNee {
 
 private:
     /// Light from one sampled point of one light, weighted against meeting it by sampling the BSDF.
-    static Rgb direct(const auto& scene, const SurfacePoint& at, const Basis& basis, const Vec3& local_wo, const auto& bsdf,
+    [[gnu::always_inline]] static Rgb direct(const auto& scene, const SurfacePoint& at, const Basis& basis, const Vec3& local_wo, const auto& bsdf,
                       float which_light, const Vec2& on_light) {
         const LightSample light = scene.sample_light(at, which_light, on_light);
         if (!(light.pdf.value > 0)) return Rgb(0);

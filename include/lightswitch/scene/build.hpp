@@ -179,7 +179,7 @@ private:
             if (shape.emission) {
                 const double area = twice_area / 2;
                 record.light = add_light(TriangleLight{record.corner, record.edge1, record.edge2, normal, *shape.emission,
-                                                       float(area), record.offset},
+                                                       AreaPdf{static_cast<float>(1 / area)}, record.offset},
                                          shape.origin);
                 if (emitter.light_count++ == 0) first_light = record.light;
                 centroid += (a + b + c) * (area / 3);

@@ -40,8 +40,8 @@ using Source = std::variant<PointSource, DirectionalSource, EnvironmentSource>;
 struct CameraDescription {
     enum class FovAxis { x, y, diagonal, smaller, larger };
 
-    DMat4 to_world{1};           ///< rigid, reflections allowed
-    double fov = 39.3077;        ///< full angle in degrees, strictly between 0 and 180
+    DMat4 to_world{1};     ///< rigid, reflections allowed
+    double fov = 39.3077;  ///< full angle in degrees, strictly between 0 and 180
     FovAxis fov_axis = FovAxis::x;
     double aperture_radius = 0;  ///< in scene units
     double focus_distance = 1;   ///< along the optical axis, in scene units
@@ -99,13 +99,14 @@ struct SceneDescription {
     FilmDescription film;
     std::optional<int> max_depth;  ///< what the file asks of a method, if it does
     std::optional<int> rr_depth;
-    std::optional<int> samples;    ///< samples per pixel that the file asks for
+    std::optional<int> samples;  ///< samples per pixel that the file asks for
 
     std::size_t add(Material bsdf, Origin origin = {}) {
         materials.push_back({std::move(bsdf), std::move(origin)});
         return materials.size() - 1;
     }
-    void add(std::variant<Mesh, Sphere> geometry, std::size_t material, std::optional<Rgb> emission = {}, Origin origin = {}) {
+    void add(std::variant<Mesh, Sphere> geometry, std::size_t material, std::optional<Rgb> emission = {},
+             Origin origin = {}) {
         shapes.push_back({std::move(geometry), material, emission, std::move(origin)});
     }
     void add(Source source, Origin origin = {}) { sources.push_back({source, std::move(origin)}); }

@@ -13,8 +13,8 @@ namespace lightswitch {
 
 /// A triangle mesh. Seen from its front, a triangle's corners run counter-clockwise.
 struct Mesh {
-    std::vector<DVec3> positions;                         ///< in scene units
-    std::vector<DVec3> normals;                           ///< one per position, any length but 0; empty for flat triangles
+    std::vector<DVec3> positions;  ///< in scene units
+    std::vector<DVec3> normals;    ///< one per position, any length but 0; empty for flat triangles
     std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices into `positions`
 
     /// The mesh under an affine, invertible `matrix`; normals follow the inverse transpose, and a reflection leaves the front

@@ -5,6 +5,7 @@
 
 #include <lightswitch/bsdf/bsdf.hpp>
 #include <lightswitch/core/dispatch.hpp>
+#include <lightswitch/core/maybe.hpp>
 #include <lightswitch/core/table.hpp>
 #include <lightswitch/embree/accelerator.hpp>
 #include <lightswitch/light/light.hpp>
@@ -108,23 +109,28 @@ public:
     // --- rays
 
     /// The closest surface along `ray`, or nothing.
-    std::optional<SurfacePoint> intersect(const Ray& ray) const {
+    [[gnu::always_inline]] Maybe<SurfacePoint> intersect(const Ray& ray) const {
+        // Filled in place: copying a point costs more than finding it on a small mesh.
+        Maybe<SurfacePoint> point;
         embree::Hit hit;
-        if (!accelerator_.intersect(ray, hit)) return std::nullopt;
-        if (hit.geometry == embree::Accelerator::triangle_geometry) [[likely]]
-            return triangle_point(hit);
-        return sphere_point(ray, hit);
+        if (accelerator_.intersect(ray, hit)) {
+            if (hit.geometry == embree::Accelerator::triangle_geometry) [[likely]]
+                locate_on_triangle(hit, point.emplace());
+            else
+                locate_on_sphere(ray, hit, point.emplace());
+        }
+        return point;
     }
 
     /// Whether any surface lies on the ray between `near` and `far`.
-    bool occluded(const Ray& ray) const { return accelerator_.occluded(ray); }
+    [[gnu::always_inline]] bool occluded(const Ray& ray) const { return accelerator_.occluded(ray); }
 
     // --- surfaces
 
     /// Calls `f(bsdf)` with the surface model at `point`, as its concrete type, and returns what it returns.
     template <class F>
-    decltype(auto) with_bsdf(const SurfacePoint& point, F&& f) const {
-        return dispatch<sizeof...(B)>(point.material.kind(), [&](auto kind) -> decltype(auto) {
+    [[gnu::always_inline]] decltype(auto) with_bsdf(const SurfacePoint& point, F&& f) const {
+        return dispatch<sizeof...(B)>(point.material.kind(), [&](auto kind) __attribute__((always_inline)) -> decltype(auto) {
             return f(std::get<kind>(data_.bsdfs)[point.material.position()]);
         });
     }
@@ -132,9 +138,9 @@ public:
     // --- lights
 
     /// Radiance that the surface at `point` emits along `direction` (unit, away from the surface).
-    Rgb emitted(const SurfacePoint& point, const Vec3& direction) const {
+    [[gnu::always_inline]] Rgb emitted(const SurfacePoint& point, const Vec3& direction) const {
         if (!point.light) return Rgb(0);
-        return with_light(point.light, [&](const auto& light) {
+        return with_light(point.light, [&](const auto& light) __attribute__((always_inline)) {
             if constexpr (is_area<decltype(light)>)
                 return light.emitted(point, direction);
             else
@@ -151,17 +157,17 @@ public:
 
     /// A direction towards a light that `choice` in [0, 1) selects by power and on which `u` selects a place; the density
     /// includes the selection. Black when there is no light.
-    LightSample sample_light(const SurfacePoint& from, float choice, const Vec2& u) const {
+    [[gnu::always_inline]] LightSample sample_light(const SurfacePoint& from, float choice, const Vec2& u) const {
         if (data_.light_choice.empty()) return {};
         const std::size_t number = data_.light_choice.sample(choice);
-        LightSample sample = with_light(locate(number), [&](const auto& light) { return light.sample(from, u); });
+        LightSample sample = with_light(locate(number), [&](const auto& light) __attribute__((always_inline)) { return light.sample(from, u); });
         sample.pdf = sample.pdf * data_.light_choice.probability(number);
         return sample;
     }
 
-    /// The density with which `sample_light` at `from` chooses the direction `wi` to `hit`, a point on a light.
-    SolidAnglePdf light_pdf(const SurfacePoint& from, const Vec3& wi, const SurfacePoint& hit) const {
-        const SolidAnglePdf pdf = with_light(hit.light, [&](const auto& light) {
+    /// The density with which `sample_light` at the position `from` chooses the direction `wi` to `hit`, a point on a light.
+    [[gnu::always_inline]] SolidAnglePdf light_pdf(const Vec3& from, const Vec3& wi, const SurfacePoint& hit) const {
+        const SolidAnglePdf pdf = with_light(hit.light, [&](const auto& light) __attribute__((always_inline)) {
             if constexpr (is_area<decltype(light)>)
                 return light.pdf(from, wi, hit);
             else
@@ -170,11 +176,11 @@ public:
         return pdf * data_.light_choice.probability(light_number(hit.light));
     }
 
-    /// The density with which `sample_light` at `from` chooses the direction `wi` through the environment.
-    SolidAnglePdf environment_pdf(const SurfacePoint& from, const Vec3& wi) const {
+    /// The density with which `sample_light` chooses the direction `wi` through the environment.
+    SolidAnglePdf environment_pdf(const Vec3& wi) const {
         SolidAnglePdf sum;
-        for_each_environment([&](std::size_t number, const auto& light) {
-            sum.value += light.pdf(from, wi).value * data_.light_choice.probability(number);
+        for_each_environment([&](std::size_t number, const auto& light) __attribute__((always_inline)) {
+            sum.value += light.pdf(wi).value * data_.light_choice.probability(number);
         });
         return sum;
     }
@@ -185,8 +191,8 @@ public:
 
     /// Calls `f(light)` with that light as its concrete type, and returns what it returns.
     template <class F>
-    decltype(auto) with_light(TypedIndex light, F&& f) const {
-        return dispatch<sizeof...(L)>(light.kind(), [&](auto kind) -> decltype(auto) {
+    [[gnu::always_inline]] decltype(auto) with_light(TypedIndex light, F&& f) const {
+        return dispatch<sizeof...(L)>(light.kind(), [&](auto kind) __attribute__((always_inline)) -> decltype(auto) {
             return f(std::get<kind>(data_.lights)[light.position()]);
         });
     }
@@ -204,38 +210,38 @@ public:
     /// Scene units to render units.
     float length(double scene_units) const { return static_cast<float>(data_.space.length(scene_units)); }
     const RenderSpace& space() const { return data_.space; }
+    const embree::Accelerator& accelerator() const { return accelerator_; }
     const SceneStatistics& statistics() const { return data_.statistics; }
 
 private:
-    SurfacePoint triangle_point(const embree::Hit& hit) const {
+    [[gnu::always_inline]] void locate_on_triangle(const embree::Hit& hit, SurfacePoint& point) const {
         const detail::TriangleRecord& t = data_.triangles[hit.primitive];
-        SurfacePoint point{.position = t.corner + hit.u * t.edge1 + hit.v * t.edge2,
-                           .normal = t.normal,
-                           .shading_normal = t.normal,
-                           .offset = t.offset,
-                           .distance = hit.distance,
-                           .material = t.material,
-                           .light = t.light};
+        point.position = t.corner + hit.u * t.edge1 + hit.v * t.edge2;
+        point.normal = t.normal;
+        point.shading_normal = t.normal;
+        point.offset = t.offset;
+        point.distance = hit.distance;
+        point.material = t.material;
+        point.light = t.light;
         if (t.shading_normals != detail::TriangleRecord::flat) {
             const auto& n = data_.shading_normals[t.shading_normals];
             const Vec3 sum = (1 - hit.u - hit.v) * n[0] + hit.u * n[1] + hit.v * n[2];
             const float length2 = length_squared(sum);
             if (length2 > 0) point.shading_normal = sum * (1 / std::sqrt(length2));
         }
-        return point;
     }
 
-    SurfacePoint sphere_point(const Ray& ray, const embree::Hit& hit) const {
+    [[gnu::always_inline]] void locate_on_sphere(const Ray& ray, const embree::Hit& hit, SurfacePoint& point) const {
         const detail::SphereRecord& s = data_.spheres[hit.primitive];
         // Projected back onto the sphere, where the error no longer depends on how far the ray came.
         const Vec3 outward = normalize(ray.origin + hit.distance * ray.direction - s.center);
-        return {.position = s.center + s.radius * outward,
-                .normal = s.side * outward,
-                .shading_normal = s.side * outward,
-                .offset = s.offset,
-                .distance = hit.distance,
-                .material = s.material,
-                .light = s.light};
+        point.position = s.center + s.radius * outward;
+        point.normal = s.side * outward;
+        point.shading_normal = point.normal;
+        point.offset = s.offset;
+        point.distance = hit.distance;
+        point.material = s.material;
+        point.light = s.light;
     }
 
     template <class T>

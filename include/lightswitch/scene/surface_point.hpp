@@ -20,20 +20,20 @@ struct SurfacePoint {
     TypedIndex material;     ///< which BSDF
     TypedIndex light;        ///< which light of the scene this surface is, if it is one
 
-    Basis shading_frame() const { return Basis(shading_normal); }
+    [[gnu::always_inline]] Basis shading_frame() const { return Basis(shading_normal); }
 
     /// The position moved off the surface to the side of `direction`.
-    Vec3 position_towards(const Vec3& direction) const {
+    [[gnu::always_inline]] Vec3 position_towards(const Vec3& direction) const {
         return position + std::copysign(offset, dot(direction, normal)) * normal;
     }
 
     /// A ray that leaves the surface along `direction` (unit).
-    Ray spawn(const Vec3& direction, float far = infinity) const {
+    [[gnu::always_inline]] Ray spawn(const Vec3& direction, float far = infinity) const {
         return {.origin = position_towards(direction), .direction = direction, .near = 0, .far = far};
     }
 
     /// The segment to `target`, which must already stand off its own surface: the ray to test for visibility.
-    Ray segment_to(const Vec3& target) const {
+    [[gnu::always_inline]] Ray segment_to(const Vec3& target) const {
         const Vec3 origin = position_towards(target - position);
         return {.origin = origin, .direction = target - origin, .near = 0, .far = 1};
     }

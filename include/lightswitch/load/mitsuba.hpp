@@ -1,0 +1,200 @@
+#pragma once
+
+// Scene files of Mitsuba 3 (a subset of its XML).
+
+#include <lightswitch/load/mitsuba_bsdf.hpp>
+#include <lightswitch/load/mitsuba_camera.hpp>
+#include <lightswitch/load/obj.hpp>
+#include <lightswitch/load/ply.hpp>
+
+namespace lightswitch {
+
+/// Reads a scene file of Mitsuba 3, as its RGB variants see it; `defines` give `$name` a value, before any `<default>`.
+///
+/// Supported are the integrator `path`; the sensors `perspective` and `thinlens` with `hdrfilm`; the shapes `rectangle`, `cube`,
+/// `disk`, `sphere`, `obj` and `ply`; the bsdfs `diffuse`, `conductor`, `roughconductor` (GGX), `dielectric` and `twosided`; the
+/// emitters `area`, `point`, `directional` and `constant`. What is left out has Mitsuba's default, but for the clipping planes,
+/// which are then at 0 and infinity. File names are relative to the scene file.
+///
+/// Throws `Error` with file, line and element for everything that it cannot honour: nothing is ignored unseen. Thread safe.
+LibraryDescription load_mitsuba(const std::filesystem::path& file,
+                                const std::map<std::string, std::string>& defines = {});
+
+namespace detail {
+
+class MitsubaReader {
+public:
+    MitsubaReader(const std::filesystem::path& path, const std::map<std::string, std::string>& defines)
+        : folder_(path.parent_path()), file_(path, defines) {
+        scene_.name = path.stem().string();
+    }
+
+    LibraryDescription read() {
+        const pugi::xml_node root = file_.root();
+        if (std::string_view(root.name()) != "scene")
+            fail(file_.origin(root), "the root of a scene file must be <scene>");
+        XmlElement element(file_, root);
+        check_version(root);
+
+        // BSDFs first: those that no shape uses are checked too.
+        for (const auto node : element.objects({"bsdf"})) read_bsdf(file_, node);
+        if (const auto node = at_most_one(element, "integrator")) read_integrator(file_, *node, scene_);
+        const auto sensor = at_most_one(element, "sensor");
+        if (!sensor) element.error("there is no camera: add a <sensor>");
+        read_sensor(file_, *sensor, scene_);
+        for (const auto node : element.objects({"shape"})) read_shape(node);
+        for (const auto node : element.objects({"emitter"})) read_emitter(node);
+        element.finish();
+        return std::move(scene_);
+    }
+
+private:
+    void check_version(pugi::xml_node root) {
+        const std::string version = root.attribute("version").value();
+        const auto major = parse_integer(std::string_view(version).substr(0, version.find('.')));
+        if (!major || version.find_first_not_of("0123456789.") != std::string::npos)
+            fail(file_.origin(root), quote(version) + " is not a version such as \"3.0.0\"");
+        if (*major != 2 && *major != 3)
+            fail(file_.origin(root),
+                 "is of version " + version + ", but only versions 2 and 3 of the format are known");
+    }
+
+    void read_shape(pugi::xml_node node) {
+        XmlElement element(file_, node);
+        const auto bsdfs = element.objects({"bsdf", "ref"});
+        if (bsdfs.size() > 1) fail(file_.origin(bsdfs[1]), "is the second bsdf of the shape");
+        const auto light = at_most_one(element, "emitter");
+        std::optional<Rgb> emission;
+        if (light) emission = read_area_light(*light);
+
+        auto geometry = read_geometry(element);
+        element.finish();
+        scene_.add(std::move(geometry),
+                   bsdfs.empty() ? default_material(light.has_value(), element) : material(bsdfs[0]), emission,
+                   element.origin());
+    }
+
+    std::variant<Mesh, Sphere> read_geometry(XmlElement& element) {
+        const DMat4 to_world = element.transform("to_world").value_or(DMat4(1));
+        const bool flip = element.boolean("flip_normals", false);
+        const std::string type = element.type();
+        if (type == "sphere") return read_sphere(element, to_world, flip);
+        if (type == "obj" || type == "ply") return read_mesh_file(element, to_world, flip);
+        Mesh mesh;
+        if (type == "rectangle") mesh = rectangle(to_world);
+        else if (type == "cube") mesh = cube(to_world);
+        else if (type == "disk") mesh = disk(to_world);
+        else element.unknown_type("rectangle, cube, disk, sphere, obj and ply");
+        if (type != "disk") element.boolean("face_normals", false);  // they are flat anyway
+        return flip ? mesh.flipped() : mesh;
+    }
+
+    static Sphere read_sphere(XmlElement& element, const DMat4& to_world, bool flip) {
+        const DVec3 center = element.vector("center").value_or(DVec3(0));
+        const double radius = element.number("radius", 1);
+        if (!(radius > 0)) fail(element.origin("radius"), "must be above 0; flip_normals turns a sphere inside out");
+        const double scale = std::cbrt(linear_determinant(to_world));
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j <= i; ++j) {
+                const double product = glm::dot(DVec3(to_world[i]) / scale, DVec3(to_world[j]) / scale);
+                if (!(std::abs(product - (i == j ? 1 : 0)) < 1e-6))
+                    fail(element.origin("to_world"),
+                         "a sphere must stay one: only the same scale in all directions is allowed");
+            }
+        // As in Mitsuba 3.9, a reflection turns the sphere inside out.
+        return {.center = DVec3(to_world * glm::dvec4(center, 1)),
+                .radius = radius * std::abs(scale),
+                .inward = flip != (scale < 0)};
+    }
+
+    Mesh read_mesh_file(XmlElement& element, const DMat4& to_world, bool flip) {
+        const auto name = element.text("filename");
+        if (!name) element.error("the parameter \"filename\" is missing");
+        const bool flat = element.boolean("face_normals", false);
+        element.boolean("flip_tex_coords", false);  // there are no textures
+        const FileNormals use = flat ? FileNormals::ignore : FileNormals::use;
+        Mesh mesh;
+        try {
+            mesh = element.type() == "obj" ? load_obj(folder_ / *name, use) : load_ply(folder_ / *name, use);
+        } catch (const Error& error) {
+            fail(element.origin(), error.what());
+        }
+
+        const bool has_normals = !mesh.normals.empty();
+        mesh = mesh.transformed(to_world);
+        // As in Mitsuba 3.9, where there are no normals in the file a reflection turns the winding, and so the mesh inside out.
+        if (!has_normals && linear_determinant(to_world) < 0) mesh = mesh.flipped();
+        if (!has_normals && !flat) mesh.smooth();
+        return flip ? mesh.flipped() : mesh;
+    }
+
+    Rgb read_area_light(pugi::xml_node node) {
+        XmlElement element(file_, node);
+        if (element.type() != "area") element.unknown_type("area, for a shape");
+        if (element.has("to_world")) fail(element.origin("to_world"), "an area light is where its shape is");
+        const Rgb radiance = element.color("radiance", 1, XmlElement::Color::emission);
+        element.finish();
+        return radiance;
+    }
+
+    void read_emitter(pugi::xml_node node) {
+        XmlElement element(file_, node);
+        const auto to_world = element.transform("to_world");
+        const auto emission = [&](const char* name) { return element.color(name, 1, XmlElement::Color::emission); };
+        if (element.type() == "point") {
+            const auto position = element.vector("position");
+            if (position && to_world) element.error("give either position or to_world");
+            scene_.add(PointSource{.position = position.value_or(to_world ? DVec3((*to_world)[3]) : DVec3(0)),
+                                   .intensity = emission("intensity")},
+                       element.origin());
+        } else if (element.type() == "directional") {
+            const auto direction = element.vector("direction");
+            if (direction && to_world) element.error("give either direction or to_world");
+            scene_.add(
+                DirectionalSource{.direction = direction.value_or(to_world ? DVec3((*to_world)[2]) : DVec3(0, 0, 1)),
+                                  .irradiance = emission("irradiance")},
+                element.origin());
+        } else if (element.type() == "constant") {
+            if (has_environment_) element.error("is the second environment of the scene");
+            has_environment_ = true;
+            scene_.add(EnvironmentSource{.radiance = emission("radiance")}, element.origin());
+        } else if (element.type() == "area") {
+            element.error("an area light must be inside a <shape>");
+        } else {
+            element.unknown_type("point, directional, constant, and area inside a shape");
+        }
+        element.finish();
+    }
+
+    /// Index of the material of a `<bsdf>` or `<ref>`; one material however many shapes use it.
+    std::size_t material(pugi::xml_node node) {
+        const pugi::xml_node target = resolve_bsdf(file_, node);
+        const auto known = materials_.find(target.offset_debug());
+        if (known != materials_.end()) return known->second;
+        const std::size_t index = scene_.add(read_bsdf(file_, target), file_.origin(target));
+        return materials_[target.offset_debug()] = index;
+    }
+
+    /// Mitsuba gives a shape without a BSDF a grey one, or a black one when it is a light.
+    std::size_t default_material(bool light, const XmlElement& shape) {
+        auto& index = light ? black_ : grey_;
+        if (!index) index = scene_.add(Lambert{.reflectance = Rgb(light ? 0.0f : 0.5f)}, shape.origin());
+        return *index;
+    }
+
+    std::filesystem::path folder_;
+    XmlFile file_;
+    LibraryDescription scene_;
+    std::map<std::ptrdiff_t, std::size_t> materials_;
+    std::optional<std::size_t> grey_, black_;
+    bool has_environment_ = false;
+};
+
+}  // namespace detail
+
+inline LibraryDescription load_mitsuba(const std::filesystem::path& file,
+                                       const std::map<std::string, std::string>& defines) {
+    return detail::MitsubaReader(file, defines).read();
+}
+
+}  // namespace lightswitch

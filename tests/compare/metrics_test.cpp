@@ -1,0 +1,42 @@
+#include <lightswitch/compare/metrics.hpp>
+
+#include <doctest/doctest.h>
+
+using namespace lightswitch;
+
+namespace {
+
+/// 4 x 2 pixels whose n-th channel value is (scale (factor n mod modulus) + offset), all exact in float.
+Image pattern(int factor, int modulus, float scale, float offset) {
+    Image image(4, 2);
+    int n = 0;
+    for (Rgb& p : image.pixels())
+        for (int c = 0; c < 3; ++c) p[c] = scale * static_cast<float>(n++ * factor % modulus) + offset;
+    return image;
+}
+
+}  // namespace
+
+TEST_CASE("metrics: agree with NumPy in double precision") {
+    const Image x = pattern(7, 11, 0.125f, -0.25f), r = pattern(5, 13, 0.25f, 0);
+    CHECK(mse(x, r) == doctest::Approx(2.22330729167).epsilon(1e-6));
+    CHECK(rmse(x, r) == doctest::Approx(1.49107588394).epsilon(1e-6));
+    CHECK(relmse(x, r) == doctest::Approx(0.986411902715).epsilon(1e-6));
+    CHECK(mape(x, r) == doctest::Approx(2.26995545472).epsilon(1e-6));
+    CHECK(smape(x, r) == doctest::Approx(1.28351201606).epsilon(1e-6));
+    CHECK(mean_ratio(x, r) == doctest::Approx(0.237931034483).epsilon(1e-6));
+}
+
+TEST_CASE("metrics: equal images, black images, values that are not finite, other sizes") {
+    const Image x = pattern(7, 11, 0.125f, 0);
+    for (const auto metric : {mse, rmse, relmse, mape, smape}) CHECK(metric(x, x) == 0);
+    CHECK(mean_ratio(x, x) == 1);
+    CHECK(std::isnan(mean_ratio(Image(1, 1), Image(1, 1))));
+    CHECK(smape(x, Image(4, 2)) <= 2);
+    Image broken = x;
+    broken(1, 1).y = std::numeric_limits<float>::quiet_NaN();
+    for (const auto metric : {mse, rmse, relmse, mape, smape, mean_ratio}) {
+        CHECK(std::isnan(metric(broken, x)));
+        CHECK_THROWS_AS(metric(x, Image(2, 4)), Error);
+    }
+}

@@ -1,0 +1,76 @@
+// Changes valid files at random, with fixed seeds: every result must either load or throw `Error`. Run it under the address and
+// undefined behaviour sanitizers to see more.
+
+#include "load/files.hpp"
+
+#include <lightswitch/load/mitsuba.hpp>
+
+using namespace lightswitch;
+using namespace lightswitch::test;
+
+namespace {
+
+const std::string obj =
+    "# box\nv 0 0 0\nv 1 0 0.5\nv 1 1 0\nv 0 1 -2e-3\nvt 0 0\nvt 1 1\nvn 0 0 1\nvn 0 0.6 0.8\no thing\n"
+    "f 1/1/1 2/2/1 3/1/2 4/2/2\nf -4//-2 -3//1 -2//2\nf 1/1/1 3/1/2 \\\n 4/2/1\n";
+
+const std::string ascii_ply =
+    "ply\nformat ascii 1.0\ncomment c\nelement vertex 4\nproperty float x\nproperty float y\nproperty double "
+    "z\nproperty uchar red\n"
+    "element face 2\nproperty list uchar int vertex_indices\nelement edge 1\nproperty int a\nend_header\n"
+    "0 0 0 255\n1 0 0 1\n1 1 0 2\n0 1 0.5 3\n4 0 1 2 3\n3 0 1 3\n7\n";
+
+const std::string binary_ply =
+    "ply\nformat binary_big_endian 1.0\nelement vertex 3\nproperty short x\nproperty char y\nproperty uchar z\n"
+    "element face 1\nproperty list uchar uchar vertex_indices\nend_header\n" +
+    std::string("\0\1\2\3\0\0\1\0\1\2\0\0\3\0\1\2", 16);
+
+const std::string xml =
+    "<?xml version=\"1.0\"?>\n<scene version=\"3.0.0\">\n<default name=\"r\" value=\"0.5\"/>\n<integrator "
+    "type=\"path\">"
+    "<integer name=\"max_depth\" value=\"8\"/></integrator>\n<sensor type=\"thinlens\"><float name=\"fov\" "
+    "value=\"40\"/>"
+    "<float name=\"aperture_radius\" value=\"0.1\"/><transform name=\"to_world\"><lookat origin=\"0, 1, 4\" "
+    "target=\"0, 0, 0\" "
+    "up=\"0, 1, 0\"/><rotate y=\"1\" angle=\"20\"/></transform><sampler type=\"independent\"/><film type=\"hdrfilm\">"
+    "<integer name=\"width\" value=\"32\"/><rfilter type=\"tent\"/></film></sensor>\n<bsdf type=\"twosided\" id=\"a\">"
+    "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"$r, 0.2, 0.3\"/></bsdf></bsdf>\n<shape type=\"sphere\">"
+    "<point name=\"center\" x=\"1\" y=\"2\" z=\"3\"/><ref id=\"a\"/><emitter type=\"area\"><spectrum name=\"radiance\" "
+    "value=\"2\"/>"
+    "</emitter></shape>\n<shape type=\"cube\"><transform name=\"to_world\"><matrix value=\"1 0 0 0 2 0 0 0 3\"/><scale "
+    "x=\"2\"/>"
+    "</transform><bsdf type=\"dielectric\"><string name=\"int_ior\" value=\"water\"/></bsdf></shape>\n<emitter "
+    "type=\"point\">"
+    "<point name=\"position\" value=\"1\"/></emitter>\n</scene>\n";
+
+/// Loads `count` changed versions of `text`, and returns how many of them loaded.
+template <class Load>
+int fuzz(const std::string& text, const std::string& name, std::uint32_t count, const Load& load) {
+    const Folder folder;
+    const auto attempt = [&](const std::string& bytes) {
+        const auto path = folder.write(name, bytes);
+        try {
+            load(path);
+            return 1;
+        } catch (const Error&) {
+            return 0;
+        }
+    };
+    CHECK(attempt(text) == 1);
+    int loaded = 0;
+    for (std::uint32_t seed = 0; seed < count; ++seed) loaded += attempt(mutated(text, seed));
+    return loaded;
+}
+
+}  // namespace
+
+TEST_CASE("changed files load or are refused") {
+    // Both must happen, or the changes are too rough or too gentle to test anything.
+    const auto both = [](int loaded, int count) {
+        CHECK_MESSAGE((loaded > count / 100 && loaded < count), loaded, " of ", count);
+    };
+    both(fuzz(obj, "a.obj", 700, [](const auto& path) { load_obj(path); }), 700);
+    both(fuzz(ascii_ply, "a.ply", 500, [](const auto& path) { load_ply(path); }), 500);
+    both(fuzz(binary_ply, "a.ply", 500, [](const auto& path) { load_ply(path); }), 500);
+    both(fuzz(xml, "a.xml", 1000, [](const auto& path) { load_mitsuba(path); }), 1000);
+}

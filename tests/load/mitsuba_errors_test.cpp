@@ -1,0 +1,305 @@
+#include "load/files.hpp"
+
+#include <lightswitch/load/mitsuba.hpp>
+
+#include <chrono>
+
+using namespace lightswitch;
+using namespace lightswitch::test;
+
+namespace {
+
+/// The error of a whole file; it must come within a second.
+std::string error_of(const std::string& text) {
+    const Folder folder;
+    folder.write("triangle.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    folder.write("broken.obj", "v 0 0 0\nv 1 0 x\n");
+    folder.write("broken.ply", "ply\nformat ascii 1.0\n");
+    std::filesystem::create_directory(folder.path() / "directory.obj");
+    const auto path = folder.write("room.xml", text);
+    const auto start = std::chrono::steady_clock::now();
+    const std::string message = message_of([&] { load_mitsuba(path); });
+    CHECK_MESSAGE(std::chrono::steady_clock::now() - start < std::chrono::seconds(1), message);
+    CHECK_MESSAGE((message == "no error" || contains(message, "room.xml")), message);
+    return message;
+}
+
+struct Case {
+    std::string text;
+    std::string message;
+};
+
+void check(const Case& c, const std::string& before, const std::string& after) {
+    const std::string message = error_of(before + c.text + after);
+    CHECK_MESSAGE(contains(message, c.message), c.text.substr(0, 200), "\ngives   ", message, "\nwithout ", c.message);
+}
+
+/// Line 1 and 2; what follows begins in line 3.
+const std::string head = "<scene version=\"3.0.0\">\n<sensor type=\"perspective\"/>\n";
+
+}  // namespace
+
+TEST_CASE("malformed and hostile XML is refused") {
+    std::string deep, bomb = "<default name=\"a0\" value=\"" + std::string(1000, 'x') + "\"/>";
+    for (int i = 0; i < 100'000; ++i) deep += "<bsdf type=\"twosided\">";
+    for (int i = 1; i < 40; ++i) {
+        const std::string previous = "$a" + std::to_string(i - 1);
+        bomb += "<default name=\"b" + std::to_string(i) + "\" value=\"\"/><default name=\"a" + std::to_string(i) +
+                "\" value=\"" + previous + " " + previous + " " + previous + "\"/>";
+    }
+    std::string closed = deep;
+    for (int i = 0; i < 100'000; ++i) closed += "</bsdf>";
+    const Case cases[] = {
+        {"", "room.xml: contains no XML element"},
+        {"just text", "unexpected text \"just\""},
+        {"<scene", "room.xml:1: malformed XML"},
+        {head, "room.xml:2: malformed XML"},
+        {head + "<shape type=\"cube\"></bsdf></scene>", "room.xml:3: malformed XML"},
+        {head + "</scene>\n<scene version=\"3.0.0\"/>", "room.xml:4: <scene>: a second root element"},
+        {head + "</scene>\ntrailing", "unexpected text \"trailing\""},
+        {head + "words</scene>", "room.xml:1: <scene>: unexpected text \"words\""},
+        {head + "<![CDATA[words]]></scene>", "room.xml:1: <scene>: unexpected text"},
+        {"<!DOCTYPE lolz [<!ENTITY lol \"lol\"><!ENTITY lol2 \"&lol;&lol;\">]>\n<scene "
+         "version=\"3.0.0\">&lol2;</scene>",
+         "room.xml:1: <!DOCTYPE>: a document type (DOCTYPE) is not allowed"},
+        {std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16), "contains a zero byte"},
+        {std::string("\xff\xfe<\0s\0", 6), "contains a zero byte"},
+        {head + deep, "room.xml"},
+        {head + closed + "</scene>", "room.xml:3: <bsdf type=\"twosided\">: elements are nested more than 64 deep"},
+        {head + bomb + "</scene>", "replacing parameters makes the file longer than 16 MiB"},
+        {head + "<default name=\"a\" value=\"$a\"/></scene>",
+         "room.xml:3: <default name=\"a\">: the parameter \"$a\" is not defined"},
+        {head + "<default name=\"a\" value=\"$b\"/><default name=\"b\" value=\"$a\"/></scene>",
+         "the parameter \"$b\" is not defined"},
+        {head + "<default name=\"\" value=\"1\"/></scene>", "the name must be 1 to 100 letters"},
+        {head + "<default name=\"a\"/></scene>", "the attribute \"value\" is missing"},
+        {"<bsdf type=\"diffuse\"/>", "room.xml:1: <bsdf type=\"diffuse\">: the root of a scene file must be <scene>"},
+        {"<scene><sensor type=\"perspective\"/></scene>", "room.xml:1: <scene>: the attribute \"version\" is missing"},
+        {"<scene version=\"0.6.0\"/>", "is of version 0.6.0"},
+        {"<scene version=\"three\"/>", "\"three\" is not a version"},
+        {"<scene version=\"3.0.0\" version=\"3.0.0\"/>", "the attribute \"version\" is given twice"},
+        {"<scene version=\"3.0.0\"/>", "room.xml:1: <scene>: there is no camera"},
+        {head + "<sensor type=\"thinlens\"/></scene>",
+         "room.xml:3: <sensor type=\"thinlens\">: is the second one in <scene>"},
+    };
+    for (const Case& c : cases) check(c, "", "");
+    const Folder folder;
+    CHECK(contains(message_of([&] { load_mitsuba(folder.write("big.xml", std::string((16u << 20) + 1, ' '))); }),
+                   "at most 16777216"));
+    CHECK(contains(message_of([&] { load_mitsuba(folder.write("many.xml", std::string(8u << 20, '<'))); }),
+                   "more than a million tags"));
+    CHECK(contains(message_of([&] { load_mitsuba(folder.path()); }), "is a directory"));
+    CHECK(contains(message_of([&] { load_mitsuba(folder.path() / "room.xml"); }), "room.xml: no such file"));
+}
+
+TEST_CASE("what a scene file cannot say is refused with file, line and element") {
+    const std::string obj = "<string name=\"filename\" value=\"triangle.obj\"/>";
+    const Case cases[] = {
+        {"<include filename=\"x.xml\"/>", "room.xml:3: <include>: elements of this kind are not supported here"},
+        {"<alias id=\"a\" as=\"b\"/>", "room.xml:3: <alias id=\"a\">: elements of this kind are not supported"},
+        {"<texture type=\"bitmap\"/>", "room.xml:3: <texture type=\"bitmap\">: elements of this kind are not"},
+        {"<float name=\"x\" value=\"1\"/>", "room.xml:3: <scene>: unknown parameter \"x\""},
+        {"<film type=\"hdrfilm\"/>", "room.xml:3: <film type=\"hdrfilm\">: does not belong into <scene>"},
+        {"<integrator type=\"ptracer\"/>",
+         "room.xml:3: <integrator type=\"ptracer\">: unknown type \"ptracer\"; known are path"},
+        {"<integrator type=\"path\"/><integrator type=\"path\"/>", "is the second one in <scene>"},
+        {"<integrator type=\"path\"><integer name=\"max_depth\" value=\"-2\"/></integrator>",
+         "room.xml:3: <integer name=\"max_depth\">: -2 is not between -1 and 2147483647"},
+        {"<integrator type=\"path\"><integer name=\"rr_depth\" value=\"0\"/></integrator>", "0 is not between 1"},
+        {"<integrator type=\"path\"><integer name=\"max_depth\" value=\"99999999999999999999\"/></integrator>",
+         "is not an integer"},
+        {"<integrator type=\"path\"><integer name=\"max_depth\" value=\"5.0\"/></integrator>",
+         "\"5.0\" is not an integer"},
+        {"<integrator type=\"path\"><float name=\"max_depth\" value=\"5\"/></integrator>",
+         "room.xml:3: <float name=\"max_depth\">: has the wrong type: \"max_depth\" of <integrator type=\"path\"> is a "
+         "<integer>"},
+        {"<integrator type=\"path\"><boolean name=\"hide_emitters\" value=\"true\"/></integrator>",
+         "is not supported: set it to false"},
+        {"<integrator type=\"path\"><boolean name=\"hide_emitters\" value=\"1\"/></integrator>",
+         "\"1\" is neither true nor false"},
+
+        {"<shape/>", "room.xml:3: <shape>: the attribute \"type\" is missing"},
+        {"<shape type=\"cylinder\"/>", "unknown type \"cylinder\"; known are rectangle"},
+        {"<shape type=\"obj\">" + obj + "\n<rgb name=\"colour\" value=\"1\"/></shape>",
+         "room.xml:4: <shape type=\"obj\">: unknown parameter \"colour\"; known are face_normals, filename, "
+         "flip_normals, "
+         "flip_tex_coords, to_world"},
+        {"<shape type=\"obj\" colour=\"1\"/>", "room.xml:3: <shape type=\"obj\">: unknown attribute \"colour\""},
+        {"<shape type=\"obj\"/>", "room.xml:3: <shape type=\"obj\">: the parameter \"filename\" is missing"},
+        {"<shape type=\"obj\">" + obj + obj + "</shape>",
+         "room.xml:3: <string name=\"filename\">: the parameter is given twice"},
+        {"<shape type=\"obj\"><string name=\"filename\" value=\"none.obj\"/></shape>", "<shape type=\"obj\">: "},
+        {"<shape type=\"obj\"><string name=\"filename\" value=\"none.obj\"/></shape>", "none.obj: no such file"},
+        {"<shape type=\"obj\"><string name=\"filename\" value=\"directory.obj\"/></shape>",
+         "directory.obj: is a directory"},
+        {"<shape type=\"obj\"><string name=\"filename\" value=\"\"/></shape>", "is a directory"},
+        {"<shape type=\"obj\"><string name=\"filename\" value=\"broken.obj\"/></shape>",
+         "broken.obj:2: \"x\" is not a finite number"},
+        {"<shape type=\"ply\"><string name=\"filename\" value=\"broken.ply\"/></shape>",
+         "broken.ply:3: the file ends within"},
+        {"<shape type=\"disk\"><boolean name=\"face_normals\" value=\"true\"/></shape>",
+         "unknown parameter \"face_normals\""},
+        {"<shape type=\"sphere\"><float name=\"radius\" value=\"-1\"/></shape>",
+         "<float name=\"radius\">: must be above 0"},
+        {"<shape type=\"sphere\"><float name=\"radius\" value=\"nan\"/></shape>", "\"nan\" is not a finite number"},
+        {"<shape type=\"sphere\"><float name=\"radius\" value=\"1e999\"/></shape>", "\"1e999\" is not a finite number"},
+        {"<shape type=\"sphere\"><float name=\"radius\" value=\"1m\"/></shape>", "\"1m\" is not a finite number"},
+        {"<shape type=\"sphere\"><float name=\"radius\" value=\"1 2\"/></shape>", "\"value\" needs 1 numbers, not 2"},
+        {"<shape type=\"sphere\"><float name=\"radius\" value=\"\"/></shape>", "\"value\" needs 1 numbers, not 0"},
+        {"<shape type=\"sphere\"><float name=\"radius\"/></shape>",
+         "<float name=\"radius\">: the attribute \"value\" is missing"},
+        {"<shape type=\"sphere\"><float name=\"radius\" value=\"1\"><float name=\"x\" value=\"1\"/></float></shape>",
+         "<float name=\"x\">: does not belong into <float name=\"radius\">"},
+        {"<shape type=\"sphere\"><point name=\"center\" x=\"1\" y=\"2\"/></shape>",
+         "<point name=\"center\">: the attribute \"z\" is missing"},
+        {"<shape type=\"sphere\"><point name=\"center\" value=\"1,2\"/></shape>", "needs 1 or 3 numbers, not 2"},
+        {"<shape type=\"sphere\"><point name=\"center\" value=\"1\" x=\"2\"/></shape>",
+         "give either \"value\" or x, y and z"},
+        {"<shape type=\"sphere\"><transform name=\"to_world\"><scale x=\"2\"/></transform></shape>",
+         "<transform name=\"to_world\">: a sphere must stay one"},
+        {"<shape type=\"cube\"><bsdf type=\"diffuse\"/><bsdf type=\"diffuse\"/></shape>",
+         "is the second bsdf of the shape"},
+        {"<shape type=\"cube\"><emitter type=\"area\"/><emitter type=\"area\"/></shape>",
+         "is the second one in <shape type=\"cube\">"},
+        {"<shape type=\"cube\"><emitter type=\"point\"/></shape>", "unknown type \"point\"; known are area"},
+        {"<shape type=\"cube\"><sensor type=\"perspective\"/></shape>", "does not belong into <shape type=\"cube\">"},
+        {"<shape type=\"cube\"><emitter type=\"area\"><transform name=\"to_world\"/></emitter></shape>",
+         "an area light is where its shape is"},
+
+        {"<shape type=\"cube\"><transform name=\"to_world\"><scale value=\"0\"/></transform></shape>",
+         "the transform cannot be inverted"},
+        {"<shape type=\"cube\"><transform name=\"to_world\"><scale value=\"1e300\"/></transform></shape>",
+         "the transform cannot be inverted"},
+        {"<shape type=\"cube\"><transform name=\"to_world\"><rotate y=\"2\" angle=\"9\"/></transform></shape>",
+         "<rotate>: the rotation axis has length 2.000000: give a unit vector"},
+        {"<shape type=\"cube\"><transform name=\"to_world\"><rotate angle=\"9\"/></transform></shape>",
+         "the rotation axis has length 0"},
+        {"<shape type=\"cube\"><transform name=\"to_world\"><rotate x=\"1\"/></transform></shape>",
+         "the attribute \"angle\" is missing"},
+        {"<shape type=\"cube\"><transform name=\"to_world\"><shear x=\"1\"/></transform></shape>",
+         "<shear>: unknown transform"},
+        {"<shape type=\"cube\"><transform name=\"to_world\"><matrix value=\"1 2 3\"/></transform></shape>",
+         "needs 9 or 16 numbers, not 3"},
+        {"<shape type=\"cube\"><transform name=\"to_world\"><matrix value=\"1 0 0 0 0 1 0 0 0 0 1 0 0 0 0.1 "
+         "1\"/></transform></shape>",
+         "the matrix is not affine"},
+        {"<shape type=\"cube\"><transform name=\"to_world\"><lookat origin=\"1 2 3\" target=\"1 2 "
+         "3\"/></transform></shape>",
+         "<lookat>: the camera looks at its own position"},
+        {"<shape type=\"cube\"><transform name=\"to_world\"><lookat origin=\"0,0,0\" target=\"0,0,1\" "
+         "up=\"0,0,2\"/></transform></shape>",
+         "up vector is parallel"},
+        {"<shape type=\"cube\"><transform name=\"to_world\"><lookat origin=\"0,0\" "
+         "target=\"0,0,1\"/></transform></shape>",
+         "\"origin\" needs 3 numbers, not 2"},
+        {"<shape type=\"cube\"><transform name=\"to_uv\"/></shape>", "unknown parameter \"to_uv\""},
+
+        {"<bsdf type=\"plastic\"/>",
+         "room.xml:3: <bsdf type=\"plastic\">: unknown type \"plastic\"; known are diffuse"},
+        {"<bsdf type=\"diffuse\" id=\"a\"/>\n<bsdf type=\"diffuse\" id=\"a\"/>",
+         "room.xml:4: <bsdf type=\"diffuse\">: the id \"a\" is already taken in line 3"},
+        {"<shape type=\"cube\"><ref id=\"a\"/></shape>",
+         "room.xml:3: <ref id=\"a\">: there is no element with the id \"a\""},
+        {"<shape type=\"cube\" id=\"a\"><ref id=\"a\"/></shape>", "refers to <shape type=\"cube\">, but only a <bsdf>"},
+        {"<bsdf type=\"twosided\" id=\"a\"><ref id=\"a\"/></bsdf>", "cannot be inside another one"},
+        {"<bsdf type=\"twosided\" id=\"a\"><ref id=\"b\"/></bsdf><bsdf type=\"twosided\" id=\"b\"><ref "
+         "id=\"a\"/></bsdf>",
+         "<ref id=\"b\">: a twosided bsdf cannot be inside another one"},
+        {"<bsdf type=\"twosided\"/>", "needs exactly one bsdf inside, for both sides, not 0"},
+        {"<bsdf type=\"twosided\"><bsdf type=\"diffuse\"/><bsdf type=\"diffuse\"/></bsdf>", "not 2"},
+        {"<bsdf type=\"twosided\"><bsdf type=\"dielectric\"/></bsdf>",
+         "a bsdf that transmits light cannot be twosided"},
+        {"<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"#ff0000\"/></bsdf>",
+         "\"#ff0000\" is not a finite number"},
+        {"<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"1 2\"/></bsdf>", "needs 1 or 3 numbers, not 2"},
+        {"<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"1e300\"/></bsdf>", "the colour is too large"},
+        {"<bsdf type=\"diffuse\"><string name=\"reflectance\" value=\"1\"/></bsdf>",
+         "has the wrong type: \"reflectance\""},
+        {"<bsdf type=\"diffuse\"><spectrum name=\"reflectance\" value=\"400:1, 700:1\"/></bsdf>",
+         "a spectrum by wavelengths is not supported"},
+        {"<bsdf type=\"diffuse\"><spectrum name=\"reflectance\" filename=\"a.spd\"/></bsdf>",
+         "unknown attribute \"filename\""},
+        {"<bsdf type=\"diffuse\"><texture name=\"reflectance\" type=\"bitmap\"/></bsdf>",
+         "elements of this kind are not supported here"},
+        {"<bsdf type=\"conductor\"><string name=\"material\" value=\"Au\"/></bsdf>",
+         "give eta and k as <rgb> instead of \"Au\""},
+        {"<bsdf type=\"roughconductor\"/>",
+         "the distribution is \"beckmann\" by default, but only \"ggx\" is supported"},
+        {"<bsdf type=\"roughconductor\"><string name=\"distribution\" value=\"beckmann\"/></bsdf>",
+         "only \"ggx\" is supported"},
+        {"<bsdf type=\"roughconductor\"><string name=\"distribution\" value=\"ggx\"/><float name=\"alpha_u\" "
+         "value=\"0.1\"/></bsdf>",
+         "give either alpha, or both alpha_u and alpha_v"},
+        {"<bsdf type=\"roughconductor\"><string name=\"distribution\" value=\"ggx\"/><float name=\"alpha_u\" "
+         "value=\"0.1\"/>"
+         "<float name=\"alpha_v\" value=\"0.2\"/></bsdf>",
+         "anisotropic roughness is not supported"},
+        {"<bsdf type=\"dielectric\"><string name=\"int_ior\" value=\"glass\"/></bsdf>", "unknown medium \"glass\""},
+        {"<bsdf type=\"dielectric\"><float name=\"ext_ior\" value=\"0\"/></bsdf>",
+         "an index of refraction must be above 0"},
+
+        {"<emitter type=\"area\"/>", "an area light must be inside a <shape>"},
+        {"<emitter type=\"envmap\"/>", "unknown type \"envmap\"; known are point"},
+        {"<emitter type=\"point\"><point name=\"position\" value=\"1\"/><transform name=\"to_world\"/></emitter>",
+         "give either position or to_world"},
+        {"<emitter type=\"directional\"><vector name=\"direction\" value=\"1\"/><transform "
+         "name=\"to_world\"/></emitter>",
+         "give either direction"},
+        {"<emitter type=\"constant\"/>\n<emitter type=\"constant\"/>",
+         "room.xml:4: <emitter type=\"constant\">: is the second environment"},
+    };
+    for (const Case& c : cases) check(c, head, "</scene>");
+}
+
+TEST_CASE("what a camera cannot be is refused") {
+    const auto film = [](const std::string& inside) { return "<film type=\"hdrfilm\">" + inside + "</film>"; };
+    const Case cases[] = {
+        {"<float name=\"fov\" value=\"40\"/><string name=\"focal_length\" value=\"50mm\"/>",
+         "give either fov or focal_length"},
+        {"<string name=\"focal_length\" value=\"50cm\"/>",
+         "<string name=\"focal_length\">: \"50cm\" is not a focal length"},
+        {"<string name=\"focal_length\" value=\"-50mm\"/>", "is not a focal length"},
+        {"<string name=\"fov_axis\" value=\"y\"/>", "has no meaning without fov"},
+        {"<float name=\"fov\" value=\"40\"/><string name=\"fov_axis\" value=\"z\"/>",
+         "\"z\" is not x, y, diagonal, smaller or larger"},
+        {"<float name=\"near_clip\" value=\"0\"/>", "<float name=\"near_clip\">: must be above 0"},
+        {"<float name=\"near_clip\" value=\"2\"/><float name=\"far_clip\" value=\"1\"/>",
+         "near_clip must be smaller than far_clip"},
+        {"<float name=\"focus_distance\" value=\"0\"/>", "must be above 0"},
+        {"<float name=\"aperture_radius\" value=\"1\"/>", "unknown parameter \"aperture_radius\""},
+        {"<float name=\"principal_point_offset_x\" value=\"0.1\"/>", "is not supported: set it to 0"},
+        {"<transform name=\"to_world\"><scale value=\"2\"/></transform>", "must not contain a scale or shear"},
+        {"<transform name=\"to_world\"><matrix value=\"1 .1 0 0 1 0 0 0 1\"/></transform>",
+         "must not contain a scale or shear"},
+        {film("") + film(""), "is the second one in <sensor type=\"perspective\">"},
+        {"<film type=\"specfilm\"/>", "unknown type \"specfilm\"; known are hdrfilm"},
+        {film("<integer name=\"width\" value=\"-5\"/>"), "-5 is not between 0 and 2147483647"},
+        {film("<integer name=\"width\" value=\"99999999999\"/>"), "99999999999 is not between"},
+        {film("<integer name=\"crop_width\" value=\"5\"/>"), "cropping is not supported"},
+        {film("<integer name=\"crop_offset_x\" value=\"5\"/>"), "cropping is not supported"},
+        {film("<boolean name=\"sample_border\" value=\"true\"/>"), "is not supported: set it to false"},
+        {film("<string name=\"pixel_format\" value=\"rgba\"/>"),
+         "<string name=\"pixel_format\">: \"rgba\" is not supported: use \"rgb\""},
+        {film("<string name=\"component_format\" value=\"int8\"/>"), "\"int8\" is not supported: use \"float32\""},
+        {film("<string name=\"file_format\" value=\"png\"/>"), "\"png\" is not supported: use \"openexr\""},
+        {film("<rfilter type=\"lanczos\"/>"), "unknown type \"lanczos\"; known are box, tent and gaussian"},
+        {film("<rfilter type=\"tent\"><float name=\"radius\" value=\"0\"/></rfilter>"),
+         "must be above 0 and at most 1000 pixels"},
+        {film("<rfilter type=\"box\"><float name=\"radius\" value=\"1\"/></rfilter>"), "unknown parameter \"radius\""},
+        {"<sampler type=\"sobol\"/>", "unknown type \"sobol\""},
+        {"<sampler type=\"independent\"><integer name=\"sample_count\" value=\"0\"/></sampler>", "0 is not between 1"},
+        {"<sampler type=\"independent\"><boolean name=\"jitter\" value=\"true\"/></sampler>",
+         "unknown parameter \"jitter\""},
+    };
+    for (const Case& c : cases)
+        check(c, "<scene version=\"3.0.0\">\n<sensor type=\"perspective\">", "</sensor></scene>");
+    CHECK(contains(error_of("<scene version=\"3.0.0\"><sensor type=\"thinlens\"/></scene>"),
+                   "\"aperture_radius\" is missing"));
+    CHECK(contains(
+        error_of(
+            "<scene version=\"3.0.0\"><sensor type=\"thinlens\"><float name=\"aperture_radius\" value=\"-1\"/></sensor>"
+            "</scene>"),
+        "must not be negative"));
+    CHECK(contains(error_of("<scene version=\"3.0.0\"><sensor type=\"orthographic\"/></scene>"),
+                   "known are perspective and thinlens"));
+}

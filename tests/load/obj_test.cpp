@@ -1,0 +1,117 @@
+#include "load/files.hpp"
+
+#include <lightswitch/load/obj.hpp>
+
+using namespace lightswitch;
+using namespace lightswitch::test;
+
+namespace {
+
+Mesh parse(std::string_view text, FileNormals normals = FileNormals::use) {
+    const Folder folder;
+    return load_obj(folder.write("mesh.obj", text), normals);
+}
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+constexpr std::string_view corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+}  // namespace
+
+TEST_CASE("an OBJ polygon becomes a fan around its first corner") {
+    const Mesh mesh = parse(std::string(corners) + "v 0 .5 0\nf 1 2 3 4 5\n");
+    CHECK(mesh.positions.size() == 5);
+    CHECK(mesh.positions[2] == DVec3(1, 1, 0));
+    CHECK(mesh.triangles == std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}});
+    CHECK(mesh.normals.empty());
+}
+
+TEST_CASE("OBJ numbers keep double precision") {
+    const Mesh mesh = parse("v 10000000.123456789 +1e-3 -2E2\nv 1 0 0\nv 0 1 0\nf 1 2 3");
+    CHECK(mesh.positions[0] == DVec3(10000000.123456789, 1e-3, -200));
+}
+
+TEST_CASE("negative OBJ indices count back from the last definition") {
+    const Mesh mesh = parse("v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 5 5 5\nf -4 -2 -1");
+    CHECK(mesh.positions[0] == DVec3(0));
+    CHECK(mesh.positions[3] == DVec3(5, 5, 5));
+    CHECK(mesh.triangles == std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}});
+}
+
+TEST_CASE("all forms of OBJ corners are read") {
+    const std::string head = std::string(corners) + "vt 0 0\nvt 1 0\nvn 0 0 1\nvn 0 0 2\n";
+    CHECK(parse(head + "f 1/1 2/2 3/1").positions.size() == 3);
+    CHECK(parse(head + "f 1//1 2//1 3//2").normals == std::vector<DVec3>{{0, 0, 1}, {0, 0, 1}, {0, 0, 2}});
+    CHECK(parse(head + "f 1/1/1 2/2/1 3/1/-1").normals[2] == DVec3(0, 0, 2));
+    // One position with two texture coordinates or normals is two vertices, unless normals are ignored.
+    CHECK(parse(head + "f 1/1 2/1 3/1\nf 1/2 3/1 4/1").positions.size() == 5);
+    CHECK(parse(head + "f 1//1 2//1 3//1\nf 1//2 3//1 4//1").positions.size() == 5);
+    const Mesh flat = parse(head + "f 1/1/1 2/1/1 3/1/1\nf 1/2/2 3 4/1/1", FileNormals::ignore);
+    CHECK(flat.positions.size() == 4);
+    CHECK(flat.normals.empty());
+}
+
+TEST_CASE("the normals of an OBJ file decide the front") {
+    const std::string text = std::string(corners) + "vn 0 0 -1\nf 1//1 2//1 3//1\n";
+    CHECK(parse(text).triangles == std::vector<Triangle>{{0, 2, 1}});
+    CHECK(parse(text, FileNormals::ignore).triangles == std::vector<Triangle>{{0, 1, 2}});
+}
+
+TEST_CASE("OBJ comments, CRLF, continued lines and statements without geometry are passed over") {
+    const Mesh mesh = parse(
+        "# made by hand\r\nmtllib a.mtl\r\no thing\r\ng part\r\ns off\r\nusemtl red\r\n\r\n"
+        "v 0 0 0 # origin\r\nv 1 0 \\\r\n 0\r\nv 0 1 0 0.5 0.5 0.5\r\nv 0 0 1 1\r\nl 1 2\r\np 1\r\n  f 1\\\r\n 2 3");
+    CHECK(mesh.positions.size() == 3);
+    CHECK(mesh.positions[1] == DVec3(1, 0, 0));
+    CHECK(mesh.triangles.size() == 1);
+}
+
+TEST_CASE("malformed OBJ files are refused with the line") {
+    const std::string v = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    struct Case {
+        std::string text;
+        std::string_view message;
+    };
+    const Case cases[] = {
+        {"", "mesh.obj: contains no faces"},
+        {v, "mesh.obj: contains no faces"},
+        {v + "f 1 2", "mesh.obj:4: a face needs at least 3 corners, not 2"},
+        {v + "f 1 2 4", "mesh.obj:4: vertex 4 does not exist: 3 are defined above"},
+        {v + "f 1 2 0", "mesh.obj:4: vertex 0 does not exist"},
+        {v + "f 1 2 -4", "mesh.obj:4: vertex -4 does not exist"},
+        {v + "f 1 2 99999999999999999999", "mesh.obj:4: \"99999999999999999999\" is not an index"},
+        {v + "f 1 2 3x", "mesh.obj:4: \"3x\" is not an index"},
+        {v + "f 1 2 3/", "mesh.obj:4: \"3/\" is not a corner"},
+        {v + "f 1 2 3/1", "mesh.obj:4: texture coordinate 1 does not exist: 0 are"},
+        {v + "f 1 2 3//1", "mesh.obj:4: normal 1 does not exist"},
+        {v + "f 1 2 /1/1", "is not a corner"},
+        {v + "vn 0 0 1\nf 1/1/1/1 2 3", "mesh.obj:5: "},
+        {v + "vt 1\nvn 0 0 1\nf 1/1/1/1 2 3", "mesh.obj:6: \"1/1/1/1\" is not a corner"},
+        {v + "vn 0 0 1\nf 1//1 2//1 3", "mesh.obj:5: some corners have a normal and some have none"},
+        {v + "vn 0 0 0\nf 1//1 2//1 3//1", "mesh.obj:5: normal 1 has no direction"},
+        {"v 0 0\n", "mesh.obj:1: \"v\" takes 3 to 7 numbers, not 2"},
+        {"v 0 0 nan\n", "mesh.obj:1: \"nan\" is not a finite number"},
+        {"v 0 0 inf\n", "mesh.obj:1: \"inf\" is not a finite number"},
+        {"v 0 0 1e999\n", "mesh.obj:1: \"1e999\" is not a finite number"},
+        {"v 0 0 1.5.2\n", "mesh.obj:1: \"1.5.2\" is not a finite number"},
+        {"v 0 0 1,5\n", "mesh.obj:1: \"1,5\" is not a finite number"},
+        {"v 0 0 0\n\nv \\\n 1 \\\n 2\nv 1 2 z", "mesh.obj:3: \"v\" takes 3 to 7 numbers, not 2"},
+        {"v 0 0 0\nv 1 \\\n 2 3\nv 1 2 z", "mesh.obj:4: \"z\" is not"},
+        {"vn 1 2 3 4\n", "mesh.obj:1: \"vn\" takes 3 numbers, not 4"},
+        {"cstype bezier\n", "mesh.obj:1: unknown statement \"cstype\""},
+        {std::string("\x7f"
+                     "ELF\x02\x01\0\0",
+                     8),
+         "mesh.obj:1: unknown statement \"?ELF????\""},
+    };
+    for (const Case& c : cases) {
+        const std::string message = message_of([&] { parse(c.text); });
+        CHECK_MESSAGE(contains(message, c.message), message);
+    }
+}
+
+TEST_CASE("an OBJ that is no file is refused") {
+    const Folder folder;
+    CHECK(contains(message_of([&] { load_obj(folder.path() / "none.obj"); }), "none.obj: no such file"));
+    CHECK(contains(message_of([&] { load_obj(folder.path()); }), "is a directory"));
+}
