@@ -1,5 +1,5 @@
-// Changes valid files at random, with fixed seeds: every result must either load or throw `Error`. Run it under the address and
-// undefined behaviour sanitizers to see more.
+// Changes valid files at random, with fixed seeds: every result must either load or throw `Error`. Run it under the
+// address and undefined behaviour sanitizers to see more.
 
 #include "load/files.hpp"
 

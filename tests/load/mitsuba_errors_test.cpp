@@ -111,8 +111,8 @@ TEST_CASE("what a scene file cannot say is refused with file, line and element")
         {"<integrator type=\"path\"><integer name=\"max_depth\" value=\"5.0\"/></integrator>",
          "\"5.0\" is not an integer"},
         {"<integrator type=\"path\"><float name=\"max_depth\" value=\"5\"/></integrator>",
-         "room.xml:3: <float name=\"max_depth\">: has the wrong type: \"max_depth\" of <integrator type=\"path\"> is a "
-         "<integer>"},
+         "room.xml:3: <float name=\"max_depth\">: has the wrong type: \"max_depth\" of <integrator type=\"path\"> must "
+         "be <integer>"},
         {"<integrator type=\"path\"><boolean name=\"hide_emitters\" value=\"true\"/></integrator>",
          "is not supported: set it to false"},
         {"<integrator type=\"path\"><boolean name=\"hide_emitters\" value=\"1\"/></integrator>",

@@ -43,8 +43,8 @@ FilmDescription film(const std::string& text) {
     return parse("<sensor type=\"perspective\"><film type=\"hdrfilm\">" + text + "</film></sensor>").film;
 }
 
-/// The z coordinate of the front of a shape, which lies in a plane of constant z: +1 or -1. By winding and, if there are
-/// any, by normals, which must agree.
+/// The z coordinate of the front of a shape, which lies in a plane of constant z: +1 or -1. By winding and, if there
+/// are any, by normals, which must agree.
 double front(const std::string& type, const std::string& inside) {
     const auto result = scene("<shape type=\"" + type + "\">" + inside + "</shape>");
     const auto& mesh = std::get<Mesh>(result.shapes.at(0).geometry);

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# run.sh WAY: builds the consumer in tests/package/WAY against the project, in a temporary directory, and runs it.
-# From the environment: CMAKE, SOURCE and BUILD (of the project, configured), CXX and CMAKE_GENERATOR.
+# run.sh WAY: builds the consumer in tests/package/WAY against the project, in a temporary directory, and runs it: it
+# must succeed and print the version. From the environment: CMAKE, SOURCE, BUILD (configured) and VERSION of the project, CXX and
+# CMAKE_GENERATOR.
 set -eu
 way=${1:?usage: run.sh WAY}
 work=$(mktemp -d)
@@ -35,4 +36,6 @@ esac
 
 "$CMAKE" -S "$work/consumer" -B "$work/build" -DCMAKE_BUILD_TYPE=Debug "${options[@]}"
 "$CMAKE" --build "$work/build"
-"$work/build/consumer"
+output=$("$work/build/consumer")
+echo "$output"
+[[ $output == *"lightswitch $VERSION"* ]]

@@ -92,8 +92,8 @@ TEST_CASE("flipping exchanges front and back of winding and normals") {
 }
 
 TEST_CASE("smooth normals weigh triangles by their angle at the vertex") {
-    // Two faces of a cube around the edge from a to b; the first is cut in two triangles at a, which must not change a's
-    // normal: 45 + 45 degrees of +z and 90 degrees of +x.
+    // Two faces of a cube around the edge from a to b; the first is cut in two triangles at a, which must not change
+    // a's normal: 45 + 45 degrees of +z and 90 degrees of +x.
     Mesh mesh{.positions = {{0, 0, 0}, {0, 1, 0}, {-1, 1, 0}, {-1, 0, 0}, {0, 0, -1}, {7, 7, 7}},
               .normals = {},
               .triangles = {{0, 1, 2}, {0, 2, 3}, {0, 4, 1}, {2, 2, 5}}};

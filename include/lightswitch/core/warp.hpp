@@ -1,9 +1,9 @@
 #pragma once
 
-// Maps from the unit square to the domains that rendering samples. All are continuous and spread their density evenly, so
-// that stratified numbers stay stratified. None calls the maths library for more than a square root: results are the same
-// bits wherever floats follow IEEE 754 and the compiler does not fuse products into sums (-ffp-contract=off), and the
-// maps are cheap enough for the innermost loops.
+// Maps from the unit square to the domains that rendering samples. All are continuous and spread their density evenly,
+// so that stratified numbers stay stratified. None calls the maths library for more than a square root: results are the
+// same bits wherever floats follow IEEE 754 and the compiler does not fuse products into sums (-ffp-contract=off), and
+// the maps are cheap enough for the innermost loops.
 
 #include <lightswitch/core/math.hpp>
 #include <lightswitch/core/pdf.hpp>

@@ -7,6 +7,7 @@
 
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace lightswitch {
@@ -36,8 +37,9 @@ public:
     Rgb& operator()(int x, int y) { return pixels_[index(x, y)]; }
 
     /// All pixels, row by row from the top.
-    const std::vector<Rgb>& pixels() const { return pixels_; }
-    std::vector<Rgb>& pixels() { return pixels_; }
+    const std::vector<Rgb>& pixels() const& { return pixels_; }
+    std::vector<Rgb>& pixels() & { return pixels_; }
+    std::vector<Rgb> pixels() && { return std::move(pixels_); }
 
     /// Mean of all pixels, summed in double.
     DVec3 mean() const {

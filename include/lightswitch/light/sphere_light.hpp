@@ -7,8 +7,9 @@ namespace lightswitch {
 
 /// An emitting sphere; its front (outside, or inside when `inward`) emits the same radiance in all directions.
 ///
-/// From outside, sampled uniformly over the solid angle that it covers (Shirley, Wang, Zimmerman, "Monte Carlo Techniques for
-/// Direct Lighting Calculations", 1996); from inside, by area.
+/// A sphere that shines outwards is sampled uniformly over the solid angle that it covers (Shirley, Wang, Zimmerman, "Monte
+/// Carlo Techniques for Direct Lighting Calculations", 1996); one that shines inwards by area, which also serves points on
+/// the sphere itself, for which inside and outside are a matter of rounding.
 struct SphereLight {
     static constexpr bool infinite = false;
 
@@ -27,8 +28,8 @@ struct SphereLight {
     LightSample sample(const SurfacePoint& from, const Vec2& u) const {
         const Vec3 to_center = center - from.position;
         const float distance2 = length_squared(to_center);
-        if (!(distance2 > square(radius))) return sample_from_inside(from, u);
-        if (inward) return {};
+        if (inward) return sample_by_area(from, u);
+        if (!(distance2 > square(radius))) return {};
         const float one_minus_cosine = cone(distance2);
         const float distance = std::sqrt(distance2);
         const Vec3 local = uniform_cone(u, one_minus_cosine);
@@ -46,7 +47,7 @@ struct SphereLight {
 
     SolidAnglePdf pdf(const Vec3& from, const Vec3& wi, const SurfacePoint& hit) const {
         const float distance2 = length_squared(center - from);
-        if (distance2 > square(radius)) return uniform_cone_pdf(cone(distance2));
+        if (!inward) return distance2 > square(radius) ? uniform_cone_pdf(cone(distance2)) : SolidAnglePdf{};
         return to_solid_angle(area_pdf(), length_squared(hit.position - from), std::abs(dot(wi, hit.normal)));
     }
 
@@ -59,13 +60,13 @@ private:
         return sine2 / (1 + safe_sqrt(1 - sine2));
     }
 
-    LightSample sample_from_inside(const SurfacePoint& from, const Vec2& u) const {
+    LightSample sample_by_area(const SurfacePoint& from, const Vec2& u) const {
         const Vec3 outward = uniform_sphere(u);
         const Vec3 to_light = center + radius * outward - from.position;
         const float distance2 = length_squared(to_light);
         const Vec3 wi = to_light * (1 / std::sqrt(distance2));
         const float cosine = dot(wi, outward);
-        if (!inward || !(cosine > 0)) return {};
+        if (!(cosine > 0)) return {};
         return {.wi = wi,
                 .radiance = emission,
                 .pdf = to_solid_angle(area_pdf(), distance2, cosine),

@@ -8,7 +8,8 @@
 
 namespace lightswitch {
 
-/// What becomes of the vertex normals in a mesh file: `ignore` gives flat triangles whose winding says what is their front.
+/// What becomes of the vertex normals in a mesh file: `ignore` gives flat triangles whose winding says what is their
+/// front.
 enum class FileNormals { use, ignore };
 
 namespace detail {

@@ -11,12 +11,14 @@ namespace lightswitch {
 
 /// Reads a scene file of Mitsuba 3, as its RGB variants see it; `defines` give `$name` a value, before any `<default>`.
 ///
-/// Supported are the integrator `path`; the sensors `perspective` and `thinlens` with `hdrfilm`; the shapes `rectangle`, `cube`,
-/// `disk`, `sphere`, `obj` and `ply`; the bsdfs `diffuse`, `conductor`, `roughconductor` (GGX), `dielectric` and `twosided`; the
-/// emitters `area`, `point`, `directional` and `constant`. What is left out has Mitsuba's default, but for the clipping planes,
-/// which are then at 0 and infinity. File names are relative to the scene file.
+/// Supported are the integrator `path`; the sensors `perspective` and `thinlens` with `hdrfilm`; the shapes
+/// `rectangle`, `cube`, `disk`, `sphere`, `obj` and `ply`; the bsdfs `diffuse`, `conductor`, `roughconductor` (GGX),
+/// `dielectric` and `twosided`; the emitters `area`, `point`, `directional` and `constant`. What is left out has
+/// Mitsuba's default, but for the clipping planes, which are then at 0 and infinity. File names are relative to the
+/// scene file.
 ///
-/// Throws `Error` with file, line and element for everything that it cannot honour: nothing is ignored unseen. Thread safe.
+/// Throws `Error` with file, line and element for everything that it cannot honour: nothing is ignored unseen. Thread
+/// safe.
 LibraryDescription load_mitsuba(const std::filesystem::path& file,
                                 const std::map<std::string, std::string>& defines = {});
 
@@ -122,7 +124,8 @@ private:
 
         const bool has_normals = !mesh.normals.empty();
         mesh = mesh.transformed(to_world);
-        // As in Mitsuba 3.9, where there are no normals in the file a reflection turns the winding, and so the mesh inside out.
+        // As in Mitsuba 3.9, where there are no normals in the file a reflection turns the winding, and so the mesh
+        // inside out.
         if (!has_normals && linear_determinant(to_world) < 0) mesh = mesh.flipped();
         if (!has_normals && !flat) mesh.smooth();
         return flip ? mesh.flipped() : mesh;

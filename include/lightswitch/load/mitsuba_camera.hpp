@@ -106,8 +106,8 @@ inline void read_field_of_view(XmlElement& element, CameraDescription& camera) {
 
 /// Reads a `<sensor>` into the camera, film and sample count of `scene`.
 ///
-/// Clipping planes that the file does not give are at 0 and infinity, unlike Mitsuba's 0.01 and 10000, which depend on the
-/// scale of the scene.
+/// Clipping planes that the file does not give are at 0 and infinity, unlike Mitsuba's 0.01 and 10000, which depend on
+/// the scale of the scene.
 inline void read_sensor(const XmlFile& file, pugi::xml_node node, LibraryDescription& scene) {
     XmlElement element(file, node);
     const bool lens = element.type() == "thinlens";

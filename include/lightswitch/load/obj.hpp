@@ -14,13 +14,13 @@ namespace lightswitch {
 
 /// Reads a Wavefront OBJ file of at most 1 GiB, in double precision.
 ///
-/// Polygons become fans around their first corner. Corners are one vertex when they agree in position, texture coordinate
-/// and normal, so that normals computed by `Mesh::smooth` keep an edge where the texture has a seam (as in Mitsuba 3.9); with
-/// `FileNormals::ignore`, when they agree in position. Where the file's normals point is the front. Groups, materials,
-/// texture coordinates, vertex colours, lines and points are skipped.
+/// Polygons become fans around their first corner. Corners are one vertex when they agree in position, texture
+/// coordinate and normal, so that normals computed by `Mesh::smooth` keep an edge where the texture has a seam (as in
+/// Mitsuba 3.9); with `FileNormals::ignore`, when they agree in position. Where the file's normals point is the front.
+/// Groups, materials, texture coordinates, vertex colours, lines and points are skipped.
 ///
-/// Throws `Error` with the line for anything malformed, an index out of range, a normal of length 0 in use, or normals at
-/// some corners only, and when there is no face. Thread safe.
+/// Throws `Error` with the line for anything malformed, an index out of range, a normal of length 0 in use, or normals
+/// at some corners only, and when there is no face. Thread safe.
 Mesh load_obj(const std::filesystem::path& path, FileNormals normals = FileNormals::use);
 
 namespace detail {

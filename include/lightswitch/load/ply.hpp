@@ -13,12 +13,12 @@ namespace lightswitch {
 /// Reads a PLY file of at most 1 GiB: ASCII, or binary with either byte order.
 ///
 /// The element `vertex` gives x, y, z and perhaps nx, ny, nz, in any scalar type; the element `face` gives the list
-/// `vertex_indices` or `vertex_index`. Polygons become fans around their first corner. Where the file's normals point is the
-/// front. Everything else in the file is skipped.
+/// `vertex_indices` or `vertex_index`. Polygons become fans around their first corner. Where the file's normals point
+/// is the front. Everything else in the file is skipped.
 ///
-/// Throws `Error` with the line (ASCII) or the number of the element from 0 (binary) for anything malformed: a file that is
-/// shorter or longer than its header says, a number that is not finite, an index out of range, a normal of length 0 in use,
-/// or when there is no face. Thread safe.
+/// Throws `Error` with the line (ASCII) or the number of the element from 0 (binary) for anything malformed: a file
+/// that is shorter or longer than its header says, a number that is not finite, an index out of range, a normal of
+/// length 0 in use, or when there is no face. Thread safe.
 Mesh load_ply(const std::filesystem::path& path, FileNormals normals = FileNormals::use);
 
 namespace detail {

@@ -1,7 +1,7 @@
 #pragma once
 
-// The header of a PLY file: which elements follow, how many, and how they are stored (Turk, "The PLY Polygon File Format",
-// 1994).
+// The header of a PLY file: which elements follow, how many, and how they are stored (Turk, "The PLY Polygon File
+// Format", 1994).
 
 #include <lightswitch/core/error.hpp>
 #include <lightswitch/load/text.hpp>

@@ -20,8 +20,8 @@ inline bool has_finite_bits(double value) {
     return (std::bit_cast<std::uint64_t>(value) & exponent) != exponent;
 }
 
-/// The finite number that `word` spells, from its first to its last character, or nothing. Decimal or scientific notation
-/// whatever the locale; a leading plus is allowed.
+/// The finite number that `word` spells, from its first to its last character, or nothing. Decimal or scientific
+/// notation whatever the locale; a leading plus is allowed.
 std::optional<double> parse_number(std::string_view word);
 /// The same for an integer that fits in 64 bits.
 std::optional<std::int64_t> parse_integer(std::string_view word);

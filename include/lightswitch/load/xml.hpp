@@ -18,7 +18,8 @@ namespace lightswitch::detail {
 /// A parsed file. Attribute values have `$name` replaced already.
 ///
 /// Throws `Error` with the line for malformed or hostile XML: a document type (and with it all entities), text between
-/// elements, more than 64 levels, over 16 MiB of text or of replaced values, undefined or unused `$name`, ids given twice.
+/// elements, more than 64 levels, over 16 MiB of text or of replaced values, undefined or unused `$name`, ids given
+/// twice.
 class XmlFile {
 public:
     XmlFile(const std::filesystem::path& path, const std::map<std::string, std::string>& defines);
@@ -113,8 +114,8 @@ inline void XmlFile::check_childless(pugi::xml_node node) const {
         if (child.type() == pugi::node_element) fail(origin(child), "does not belong into " + origin(node).element);
 }
 
-/// Checks the tree below `node` and replaces `$name` in it, in the order of the file, since a default holds from where it
-/// stands.
+/// Checks the tree below `node` and replaces `$name` in it, in the order of the file, since a default holds from where
+/// it stands.
 inline void XmlFile::prepare(pugi::xml_node node, int depth) {
     if (node.type() == pugi::node_pcdata || node.type() == pugi::node_cdata) {
         std::string_view text = node.value();

@@ -1,7 +1,7 @@
 #pragma once
 
-// An object in a scene file: its parameters, typed and each asked for by name, and the objects inside it. What nobody asked
-// for is an error, so that nothing in a file is ignored unseen.
+// An object in a scene file: its parameters, typed and each asked for by name, and the objects inside it. What nobody
+// asked for is an error, so that nothing in a file is ignored unseen.
 
 #include <lightswitch/core/math.hpp>
 #include <lightswitch/load/xml.hpp>
@@ -9,8 +9,8 @@
 
 namespace lightswitch::detail {
 
-/// An object element, such as `<shape type="sphere">`. Functions that read a parameter throw `Error` when it has the wrong
-/// type or a malformed value.
+/// An object element, such as `<shape type="sphere">`. Functions that read a parameter throw `Error` when it has the
+/// wrong type or a malformed value.
 class XmlElement {
 public:
     /// Checks attributes and sorts the children; parameters given twice are an error.
@@ -42,8 +42,8 @@ public:
     std::optional<DMat4> transform(const std::string& name);
 
     enum class Color { reflectance, emission };
-    /// A colour as Mitsuba's RGB variants see it: `<rgb>`, one number, or a `<spectrum>` of one value. The latter is grey as a
-    /// reflectance; as an emission it has the white of equal energy, which is not that of sRGB.
+    /// A colour as Mitsuba's RGB variants see it: `<rgb>`, one number, or a `<spectrum>` of one value. The latter is
+    /// grey as a reflectance; as an emission it has the white of equal energy, which is not that of sRGB.
     Rgb color(const std::string& name, float otherwise, Color use = Color::reflectance);
 
     /// The objects inside with one of these tags, once each.
@@ -96,7 +96,7 @@ inline pugi::xml_node XmlElement::find(const std::string& name, std::initializer
         expected += (expected.empty() ? "<" : " or <") + std::string(tag) + ">";
     }
     fail(file_.origin(found->second),
-         "has the wrong type: " + quote(name) + " of " + origin().element + " is a " + expected);
+         "has the wrong type: " + quote(name) + " of " + origin().element + " must be " + expected);
 }
 
 inline std::optional<double> XmlElement::number(const std::string& name) {
@@ -154,7 +154,8 @@ inline Rgb XmlElement::color(const std::string& name, float otherwise, Color use
     const auto numbers =
         tag == "rgb" ? read_numbers(file_, node, "value", {1, 3}) : read_numbers(file_, node, "value", {1});
     DVec3 color = numbers.size() == 1 ? DVec3(numbers[0]) : DVec3(numbers[0], numbers[1], numbers[2]);
-    // Constant spectral radiance is XYZ (1, 1, 1), whose sRGB coordinates these are (the row sums of the BT.709 matrix).
+    // Constant spectral radiance is XYZ (1, 1, 1), whose sRGB coordinates these are (the row sums of the BT.709
+    // matrix).
     if (tag == "spectrum" && use == Color::emission) color *= DVec3(1.204794, 0.948292, 0.908916);
     const Rgb result(color);
     if (!lightswitch::is_finite(result)) fail(file_.origin(node), "the colour is too large");

@@ -13,8 +13,8 @@ namespace lightswitch::detail {
 /// The matrix of a `<transform>`: its operations in the order of the file. Throws unless it is affine and invertible.
 DMat4 read_transform(const XmlFile& file, pugi::xml_node node);
 
-/// The numbers in an attribute, separated by spaces or commas. Throws unless each is finite and there are as many as one of
-/// `counts` says.
+/// The numbers in an attribute, separated by spaces or commas. Throws unless each is finite and there are as many as
+/// one of `counts` says.
 inline std::vector<double> read_numbers(const XmlFile& file, pugi::xml_node node, const char* attribute,
                                         std::initializer_list<std::size_t> counts) {
     std::string_view text = node.attribute(attribute).value();

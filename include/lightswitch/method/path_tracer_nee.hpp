@@ -23,7 +23,7 @@ struct PathTracerNee {
         // could not: at the camera and after a specular bounce.
         bool light_sampled = false;
         SolidAnglePdf pdf;
-        Vec3 from;
+        Vec3 from(0);
         for (int depth = 1;; ++depth) {
             const auto hit = scene.intersect(ray);
             if (!hit) {
@@ -48,11 +48,14 @@ struct PathTracerNee {
             const Vec3 local_wo = basis.to_local(wo);
             // One number chooses the light and the lobe: they enter different terms of the sum, so nothing correlates.
             const Vec2 direction = sampler.next_2d(), choices = sampler.next_2d(), on_light = sampler.next_2d();
+            Connection connection;
             const auto scattered = scene.with_bsdf(*hit, [&](const auto& bsdf) __attribute__((always_inline)) {
                 if constexpr (!std::remove_cvref_t<decltype(bsdf)>::specular)
-                    sum += throughput * direct(scene, *hit, basis, local_wo, bsdf, choices.x, on_light);
+                    connection = connect(scene, *hit, basis, local_wo, bsdf, choices.x, on_light);
                 return bsdf.sample(local_wo, Vec3(direction, choices.x), Transport::radiance);
             });
+            if (!is_black(connection.contribution) && !scene.occluded(connection.visibility))
+                sum += throughput * connection.contribution;
             if (!scattered) break;
             throughput *= scattered->weight;
             eta *= scattered->eta;
@@ -66,16 +69,22 @@ struct PathTracerNee {
     }
 
 private:
-    /// Light from one sampled point of one light, weighted against meeting it by sampling the BSDF.
-    [[gnu::always_inline]] static Rgb direct(const auto& scene, const SurfacePoint& at, const Basis& basis, const Vec3& local_wo, const auto& bsdf,
-                      float which_light, const Vec2& on_light) {
+    struct Connection {
+        Rgb contribution{0};  // if nothing is in between
+        Ray visibility;
+    };
+
+    /// One sampled point of one light, weighted against meeting it by sampling the BSDF.
+    [[gnu::always_inline]] static Connection connect(const auto& scene, const SurfacePoint& at, const Basis& basis,
+                                                     const Vec3& local_wo, const auto& bsdf, float which_light,
+                                                     const Vec2& on_light) {
         const LightSample light = scene.sample_light(at, which_light, on_light);
-        if (!(light.pdf.value > 0)) return Rgb(0);
+        if (!(light.pdf.value > 0)) return {};
         const Vec3 local_wi = basis.to_local(light.wi);
         const BsdfValue scattering = bsdf.evaluate(local_wo, local_wi, Transport::radiance);
-        if (is_black(scattering.value) || scene.occluded(light.visibility)) return Rgb(0);
         const float weight = light.dirac ? 1 : power_heuristic(light.pdf, scattering.pdf);
-        return scattering.value * light.radiance * (std::abs(local_wi.z) / light.pdf.value * weight);
+        return {.contribution = scattering.value * light.radiance * (std::abs(local_wi.z) / light.pdf.value * weight),
+                .visibility = light.visibility};
     }
 };
 

@@ -6,6 +6,8 @@
 #include <lightswitch/core/sampler.hpp>
 #include <lightswitch/embree/accelerator.hpp>
 #include <lightswitch/film/film.hpp>
+#include <lightswitch/film/filter.hpp>
+#include <lightswitch/scene/camera.hpp>
 #include <lightswitch/scene/ray.hpp>
 
 #include <algorithm>

@@ -153,7 +153,7 @@ private:
         TypedIndex first_light;
         for (const auto& corners : mesh.triangles) {
             std::array<std::uint32_t, 3> index;
-            for (int i = 0; i < 3; ++i) index[i] = static_cast<std::uint32_t>(base + corners[i]);
+            for (std::size_t i = 0; i < 3; ++i) index[i] = static_cast<std::uint32_t>(base + corners[i]);
             const DVec3 a = positions_[index[0]], b = positions_[index[1]], c = positions_[index[2]];
             const DVec3 cross = glm::cross(b - a, c - a);
             const double twice_area = glm::length(cross);

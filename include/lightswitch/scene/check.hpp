@@ -78,8 +78,8 @@ inline void check(const CameraDescription& camera) {
         check_position(DVec3(camera.to_world[column]), origin, "the camera's transform");
     for (int i = 0; i < 3; ++i) {
         const DVec3 a(camera.to_world[i]), b(camera.to_world[(i + 1) % 3]);
-        if (std::abs(glm::length(a) - 1) > 1e-4) fail(origin, "the camera's transform must not contain a scale");
-        if (std::abs(glm::dot(a, b)) > 1e-4) fail(origin, "the camera's transform must not contain a shear");
+        if (std::abs(glm::length(a) - 1) > 1e-3) fail(origin, "the camera's transform must not contain a scale");
+        if (std::abs(glm::dot(a, b)) > 1e-3) fail(origin, "the camera's transform must not contain a shear");
     }
     if (!(camera.aperture_radius >= 0) || !is_finite(camera.aperture_radius))
         fail(origin, "the aperture radius of " + number(camera.aperture_radius) + " is not a length");
@@ -97,6 +97,7 @@ void check(const SceneDescription<Material>& scene) {
     } catch (const Error& error) {
         fail(scene.film.origin, error.what());
     }
+    if (const std::string problem = scene.film.filter.problem(); !problem.empty()) fail(scene.film.origin, problem);
     for (const auto& material : scene.materials) {
         std::string problem;
         if constexpr (Bsdf<Material>)

@@ -20,8 +20,8 @@ struct PointSource {
     Rgb intensity{1};
 };
 
-/// A light from infinitely far away: light travels along `direction` (any length but 0) and brings `irradiance` (W/m^2) to a
-/// surface that faces it.
+/// A light from infinitely far away: light travels along `direction` (any length but 0) and brings `irradiance` (W/m^2)
+/// to a surface that faces it.
 struct DirectionalSource {
     DVec3 direction{0, 0, -1};
     Rgb irradiance{1};

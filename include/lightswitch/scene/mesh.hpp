@@ -17,16 +17,17 @@ struct Mesh {
     std::vector<DVec3> normals;    ///< one per position, any length but 0; empty for flat triangles
     std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices into `positions`
 
-    /// The mesh under an affine, invertible `matrix`; normals follow the inverse transpose, and a reflection leaves the front
-    /// where the transformed normals point (it also swaps the winding, so that front and normals stay together).
+    /// The mesh under an affine, invertible `matrix`; normals follow the inverse transpose, and a reflection leaves the
+    /// front where the transformed normals point (it also swaps the winding, so that front and normals stay together).
     Mesh transformed(const DMat4& matrix) const;
     /// The mesh with front and back exchanged.
     Mesh flipped() const;
     /// Replaces the normals by angle-weighted averages over the triangles around each position (Thuermer and Wuethrich,
-    /// "Computing Vertex Normals from Polygonal Facets", JGT 1998), as Mitsuba does. Triangles without area do not count; a
-    /// position without any other triangle gets (1, 0, 0).
+    /// "Computing Vertex Normals from Polygonal Facets", JGT 1998), as Mitsuba does. Triangles without area do not
+    /// count; a position without any other triangle gets (1, 0, 0).
     void smooth();
-    /// Turns each triangle whose normals on the whole point to its back, so that the normals decide which side is the front.
+    /// Turns each triangle whose normals on the whole point to its back, so that the normals decide which side is the
+    /// front.
     void face_along_normals();
 
 private:

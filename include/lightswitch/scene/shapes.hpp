@@ -19,7 +19,8 @@ struct Sphere {
 Mesh rectangle(const DMat4& to_world = DMat4(1));
 /// The cube from -1 to 1 in each axis, fronts outward, under `to_world`.
 Mesh cube(const DMat4& to_world = DMat4(1));
-/// The unit disk in z = 0 whose front looks along +z, under `to_world`: a fan of 256 triangles with the area of the disk.
+/// The unit disk in z = 0 whose front looks along +z, under `to_world`: a fan of 256 triangles with the area of the
+/// disk.
 Mesh disk(const DMat4& to_world = DMat4(1));
 /// A flat four-sided polygon with corners counter-clockwise as seen from the front.
 Mesh quad(const DVec3& a, const DVec3& b, const DVec3& c, const DVec3& d);

@@ -1,0 +1,87 @@
+#include "load.hpp"
+
+#include "text.hpp"
+
+#include <lightswitch/load/mitsuba.hpp>
+#include <lightswitch/scene/stock.hpp>
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+namespace lightswitch::program {
+namespace {
+
+LibraryDescription describe(const SceneOptions& options) {
+    const std::string& scene = options.scene;
+    if (scene.size() >= 4 && scene.ends_with(".xml")) return load_mitsuba(scene, options.defines);
+    const auto stock = stock::describe(scene);
+    if (!stock) {
+        std::error_code ignored;
+        if (std::filesystem::exists(scene, ignored))
+            throw Error(fmt::format("{}: is not a scene: scene files are Mitsuba 3 XML and end in .xml", scene));
+        throw Error(fmt::format("there is no scene \"{}\"{}; a scene is a file that ends in .xml, or one of {}", scene,
+                                suggestion(scene, stock::names), list(stock::names)));
+    }
+    if (!options.defines.empty()) throw Error("--define: the stock scenes have no parameters");
+    return *stock;
+}
+
+struct MaterialName {
+    std::string operator()(const Lambert&) const { return "diffuse"; }
+    std::string operator()(const Conductor&) const { return "conductor"; }
+    std::string operator()(const RoughConductor&) const { return "rough conductor"; }
+    std::string operator()(const Dielectric&) const { return "dielectric"; }
+    template <class Inner>
+    std::string operator()(const TwoSided<Inner>& bsdf) const {
+        return "two-sided " + (*this)(bsdf.inner);
+    }
+};
+
+SceneSummary summarize(const LibraryDescription& scene) {
+    SceneSummary summary{.camera = scene.camera,
+                         .max_depth = scene.max_depth,
+                         .rr_depth = scene.rr_depth,
+                         .samples = scene.samples,
+                         .materials = {}};
+    for (const auto& shape : scene.shapes) {
+        const bool mesh = std::holds_alternative<Mesh>(shape.geometry);
+        summary.meshes += mesh ? 1 : 0;
+        if (shape.emission) ++(mesh ? summary.luminous_meshes : summary.luminous_spheres);
+    }
+    for (const auto& placed : scene.sources) {
+        if (std::holds_alternative<EnvironmentSource>(placed.source)) ++summary.environments;
+        if (std::holds_alternative<PointSource>(placed.source)) ++summary.point_lights;
+        if (std::holds_alternative<DirectionalSource>(placed.source)) ++summary.directional_lights;
+    }
+    for (const auto& material : scene.materials) ++summary.materials[std::visit(MaterialName{}, material.bsdf)];
+    return summary;
+}
+
+}  // namespace
+
+LoadedScene load_scene(const SceneOptions& options) {
+    LibraryDescription description = describe(options);
+    if (options.size) {
+        description.film.width = options.size->width;
+        description.film.height = options.size->height;
+    }
+    if (options.filter) description.film.filter = *options.filter;
+    SceneSummary summary = summarize(description);
+    return {std::move(summary), build_any(description, options.build)};
+}
+
+std::optional<Box> bounds(const AnyScene& any_scene) {
+    return std::visit(
+        [](const auto& scene) -> std::optional<Box> {
+            if (scene.statistics().triangles + scene.statistics().spheres == 0) return {};
+            RTCBounds box;
+            rtcGetSceneBounds(scene.accelerator().handle(), &box);
+            const RenderSpace& space = scene.space();
+            const auto corner = [&](float x, float y, float z) { return space.center() + DVec3(x, y, z) / space.scale(); };
+            return Box{corner(box.lower_x, box.lower_y, box.lower_z), corner(box.upper_x, box.upper_y, box.upper_z)};
+        },
+        any_scene);
+}
+
+}  // namespace lightswitch::program

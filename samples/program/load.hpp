@@ -1,0 +1,35 @@
+#pragma once
+
+// From the words on the command line to a built scene.
+
+#include "program.hpp"
+
+#include <lightswitch/scene/any_scene.hpp>
+
+namespace lightswitch::program {
+
+/// What a scene was described with: all that the program wants to know of a description, whose meshes are not kept.
+struct SceneSummary {
+    CameraDescription camera;
+    std::optional<int> max_depth, rr_depth, samples;
+    std::size_t meshes = 0, luminous_meshes = 0, luminous_spheres = 0;
+    std::size_t environments = 0, point_lights = 0, directional_lights = 0;
+    std::map<std::string, std::size_t> materials;  ///< by kind
+};
+
+struct LoadedScene {
+    SceneSummary summary;
+    AnyScene scene;
+};
+
+/// Reads and builds the scene. Throws `Error` for whatever is wrong with it.
+LoadedScene load_scene(const SceneOptions& options);
+
+/// A box in scene units.
+struct Box {
+    DVec3 lower, upper;
+};
+/// The box around all surfaces; nothing when there are none.
+std::optional<Box> bounds(const AnyScene& scene);
+
+}  // namespace lightswitch::program

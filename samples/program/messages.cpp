@@ -1,0 +1,24 @@
+#include "messages.hpp"
+
+#include <cstdio>
+#include <string>
+
+namespace lightswitch::program {
+namespace {
+
+/// One write, so that lines of several programs stay whole. Where standard error is gone, nobody is left to tell.
+void print(std::string_view kind, std::string_view message) {
+    std::string line = "lightswitch: ";
+    line.append(kind);
+    for (const char c : message) line += c == '\n' || c == '\r' ? ' ' : c;
+    line += '\n';
+    std::fwrite(line.data(), 1, line.size(), stderr);
+}
+
+}  // namespace
+
+void print_error(std::string_view message) { print("error: ", message); }
+void print_warning(std::string_view message) { print("warning: ", message); }
+void print_note(std::string_view message) { print("", message); }
+
+}  // namespace lightswitch::program

@@ -1,0 +1,61 @@
+#pragma once
+
+// The sub-commands of the program `lightswitch`, and what the command line says to them.
+
+#include <lightswitch/film/filter.hpp>
+#include <lightswitch/render/render.hpp>
+#include <lightswitch/scene/build.hpp>
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lightswitch::program {
+
+/// Exit statuses.
+enum Status { success = 0, user_error = 2, cancelled = 130 };
+
+/// The size of an image in pixels.
+struct Size {
+    int width = 0, height = 0;
+};
+
+/// Which scene, and how it is built.
+struct SceneOptions {
+    std::string scene;  ///< a file that ends in .xml, or the name of a stock scene
+    std::map<std::string, std::string> defines;
+    std::optional<Size> size;      ///< instead of what the scene says
+    std::optional<Filter> filter;  ///< instead of what the scene says
+    BuildOptions build;
+};
+
+struct RenderOptions {
+    SceneOptions scene;
+    std::string method = "path-nee";
+    std::vector<std::filesystem::path> outputs;
+    std::string stats;  ///< a file, "-" for standard output, or empty
+    Budget budget;      ///< without any limit: what the scene says, or 64 samples
+    std::optional<int> max_depth, rr_depth;
+    std::uint64_t seed = 0;
+    int threads = 0;
+    Sampling sampling = Sampling::sobol;
+    float exposure = 0;
+    bool quiet = false;
+};
+
+struct CompareOptions {
+    std::filesystem::path a, b;
+    std::vector<std::filesystem::path> outputs;
+    bool absolute = false;
+    float scale = 0;  ///< 0: chosen by the image
+};
+
+// Each runs one sub-command and returns the program's exit status. They throw `Error` for what the user can mend.
+int render(const RenderOptions& options);
+int compare(const CompareOptions& options);
+int info(const SceneOptions& options);
+int list_methods();
+
+}  // namespace lightswitch::program

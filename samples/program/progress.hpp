@@ -1,0 +1,26 @@
+#pragma once
+
+// The line that tells how far a render is.
+
+#include <lightswitch/render/render.hpp>
+
+namespace lightswitch::program {
+
+/// Rewrites one line on standard error, at most ten times per second, and clears it at the end. Silent unless standard
+/// error is a terminal.
+class ProgressLine {
+public:
+    explicit ProgressLine(bool wanted);
+    ~ProgressLine() { clear(); }
+    ProgressLine(const ProgressLine&) = delete;
+    ProgressLine& operator=(const ProgressLine&) = delete;
+
+    void update(const Progress& progress, std::uint64_t rays);
+    void clear();
+
+private:
+    bool shown_, dirty_ = false;
+    double next_ = 0;  // seconds of rendering at which the line is written again
+};
+
+}  // namespace lightswitch::program

@@ -1,0 +1,3 @@
+#include "run.hpp"
+
+template lightswitch::program::Rendered lightswitch::program::run(const AnyScene&, const Silhouette&, const Job&);

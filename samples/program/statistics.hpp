@@ -1,0 +1,16 @@
+#pragma once
+
+// What --stats writes.
+
+#include "program.hpp"
+#include "run.hpp"
+
+#include <string>
+
+namespace lightswitch::program {
+
+/// The numbers of a render as JSON text. Programs read it: keys are added, never renamed.
+std::string statistics_json(const AnyScene& scene, const AnyMethod& method, const RenderOptions& options,
+                            const Rendered& rendered);
+
+}  // namespace lightswitch::program

@@ -1,0 +1,97 @@
+#include <lightswitch/core/parallel.hpp>
+
+#include <doctest/doctest.h>
+
+#include <atomic>
+#include <limits>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+using namespace lightswitch;
+
+static_assert(Executor<SerialExecutor> && Executor<TbbExecutor>);
+
+TEST_CASE("parallel: every unit runs exactly once, for any number of threads") {
+    const auto check = [](const auto& executor) {
+        for (const std::size_t n : {std::size_t{0}, std::size_t{1}, std::size_t{7}, std::size_t{1000}, std::size_t{100000}}) {
+            std::vector<std::atomic<int>> runs(n);
+            executor.for_each(n, [&](std::size_t i) { ++runs[i]; });
+            std::size_t wrong = 0;
+            for (const auto& count : runs) wrong += count != 1;
+            CHECK(wrong == 0);
+        }
+    };
+    check(SerialExecutor{});
+    for (const int threads : {1, 2, 8}) {
+        const TbbExecutor executor(threads);
+        CHECK(executor.threads() == threads);
+        check(executor);
+    }
+    check(TbbExecutor{});
+    CHECK(TbbExecutor{}.threads() >= 1);
+    CHECK(SerialExecutor{}.threads() == 1);
+}
+
+TEST_CASE("parallel: no more units at a time than threads, and more threads than processors when asked") {
+    for (const int threads : {1, 2, 8}) {
+        const TbbExecutor executor(threads);
+        std::atomic<int> now = 0, most = 0;
+        executor.for_each(64, [&](std::size_t) {
+            const int running = ++now;
+            for (int seen = most; seen < running && !most.compare_exchange_weak(seen, running);) {}
+            std::this_thread::sleep_for(std::chrono::milliseconds(4));
+            --now;
+        });
+        CHECK(most <= threads);
+        CHECK(most >= std::min(threads, 2));
+    }
+}
+
+TEST_CASE("parallel: an exception of a unit reaches the caller, and the executor works on") {
+    const auto check = [](const auto& executor) {
+        const auto one_fails = [](std::size_t i) {
+            if (i == 37) throw std::runtime_error("unit 37");
+        };
+        CHECK_THROWS_WITH_AS(executor.for_each(100, one_fails), "unit 37", std::runtime_error);
+        std::atomic<int> runs = 0;
+        executor.for_each(100, [&](std::size_t) { ++runs; });
+        CHECK(runs == 100);
+    };
+    check(SerialExecutor{});
+    for (const int threads : {1, 2, 8}) check(TbbExecutor(threads));
+}
+
+TEST_CASE("parallel: units may start parallel work of their own") {
+    const TbbExecutor executor(2);
+    std::atomic<int> runs = 0;
+    executor.for_each(10, [&](std::size_t) { executor.for_each(10, [&](std::size_t) { ++runs; }); });
+    CHECK(runs == 100);
+}
+
+#if defined(__SSE2__)
+TEST_CASE("parallel: denormal numbers are zero while the guard lives, and what was set before comes back") {
+    volatile float small = std::numeric_limits<float>::min();
+    volatile float half = 0.5f;
+    const unsigned before = _mm_getcsr();
+    REQUIRE(small * half > 0);
+    {
+        const FlushDenormals guard;
+        CHECK((_mm_getcsr() & 0x8040u) == 0x8040u);
+        CHECK((_mm_getcsr() & ~0x8040u) == (before & ~0x8040u));
+        CHECK(small * half == 0);
+        {
+            const FlushDenormals inner;
+        }
+        CHECK(small * half == 0);
+    }
+    CHECK(_mm_getcsr() == before);
+    CHECK(small * half > 0);
+    try {
+        const FlushDenormals guard;
+        throw 1;
+    } catch (int) {
+    }
+    CHECK(_mm_getcsr() == before);
+}
+#endif

@@ -1,0 +1,224 @@
+#pragma once
+
+// Do two noisy estimates have the same expected value? Welch's test, for whole images and for their tiles.
+
+#include "support/chi_square.hpp"
+
+#include <lightswitch/film/image.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <ostream>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace lightswitch::test {
+
+/// Regularised incomplete beta function I_x(a, b) by Lentz's continued fraction (Numerical Recipes, section 6.4).
+inline double incomplete_beta(double a, double b, double x) {
+    if (!(x > 0)) return 0;
+    if (!(x < 1)) return 1;
+    if (x > (a + 1) / (a + b + 2)) return 1 - incomplete_beta(b, a, 1 - x);
+    const double front = std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x)) / a;
+    double c = 1, d = 1 / (1 - (a + b) * x / (a + 1)), h = d;
+    for (int m = 1; m < 10000; ++m) {
+        const double even = m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m));
+        const double odd = -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1));
+        d = 1 / (1 + even * d);
+        c = 1 + even / c;
+        h *= c * d;
+        d = 1 / (1 + odd * d);
+        c = 1 + odd / c;
+        h *= c * d;
+        if (std::abs(c * d - 1) < 1e-15) break;
+    }
+    return front * h;
+}
+
+/// Probability that Student's t with that many degrees of freedom is at least |t| away from 0, on either side.
+inline double student_p(double t, double freedom) {
+    if (std::isinf(freedom)) return std::erfc(std::abs(t) / std::sqrt(2.0));
+    return incomplete_beta(0.5 * freedom, 0.5, freedom / (freedom + t * t));
+}
+
+/// The |t| that is exceeded with probability `p`.
+inline double student_quantile(double p, double freedom) {
+    double low = 0, high = 1;
+    while (student_p(high, freedom) > p) high *= 2;
+    for (int i = 0; i < 100; ++i) {
+        const double middle = 0.5 * (low + high);
+        (student_p(middle, freedom) > p ? low : high) = middle;
+    }
+    return high;
+}
+
+/// A mean, the variance of it, and the degrees of freedom with which that variance is known.
+struct Estimate {
+    double mean = 0, variance = 0, freedom = std::numeric_limits<double>::infinity();
+
+    /// Of independent values that have the same expectation.
+    static Estimate of(std::span<const double> values) {
+        const double n = static_cast<double>(values.size());
+        double sum = 0, squares = 0;
+        for (const double v : values) sum += v;
+        for (const double v : values) squares += (v - sum / n) * (v - sum / n);
+        return {sum / n, squares / (n * (n - 1)), n - 1};
+    }
+
+    /// Welch and Satterthwaite.
+    friend Estimate operator-(const Estimate& a, const Estimate& b) {
+        const double variance = a.variance + b.variance;
+        const double inverse = a.variance * a.variance / a.freedom + b.variance * b.variance / b.freedom;
+        return {a.mean - b.mean, variance, inverse > 0 ? variance * variance / inverse : a.freedom + b.freedom};
+    }
+};
+
+/// The probability of a difference at least as large when the expectations are equal. Differences within the rounding of float
+/// images do not count: `slack` is relative to the values.
+inline double welch_p(const Estimate& a, const Estimate& b, double slack = 1e-6) {
+    const Estimate difference = a - b;
+    const double beyond = std::abs(difference.mean) - slack * (std::abs(a.mean) + std::abs(b.mean));
+    if (!(beyond > 0)) return std::isnan(beyond) ? 0 : 1;
+    return difference.variance > 0 ? student_p(beyond / std::sqrt(difference.variance), difference.freedom) : 0;
+}
+
+/// Estimates of the tiles of an image (row by row from the top, three channels each) and of the whole.
+struct TileEstimates {
+    int columns = 0, rows = 0, side = 0;
+    std::vector<Estimate> tiles;
+    Estimate whole[3];
+};
+
+/// Collects independent images of one scene. Tiles average over many pixels and samples, so that their values are close to normal.
+class Replicas {
+public:
+    explicit Replicas(int side) : side_(side) {}
+
+    void add(const Image& image) {
+        columns_ = image.width() / side_;
+        rows_ = image.height() / side_;
+        values_.resize(3 * static_cast<std::size_t>(columns_ * rows_ + 1));
+        std::vector<double> sums(values_.size());
+        for (int y = 0; y < rows_ * side_; ++y)
+            for (int x = 0; x < columns_ * side_; ++x)
+                for (int c = 0; c < 3; ++c) {
+                    const double value = image(x, y)[c] / double(side_ * side_);
+                    sums[index(y / side_ * columns_ + x / side_, c)] += value;
+                    sums[index(columns_ * rows_, c)] += value / (columns_ * rows_);
+                }
+        for (std::size_t i = 0; i < sums.size(); ++i) values_[i].push_back(sums[i]);
+    }
+
+    TileEstimates estimates() const {
+        TileEstimates result{.columns = columns_, .rows = rows_, .side = side_, .tiles = {}, .whole = {}};
+        for (const auto& values : values_) result.tiles.push_back(Estimate::of(values));
+        std::copy(result.tiles.end() - 3, result.tiles.end(), result.whole);
+        result.tiles.resize(result.tiles.size() - 3);
+        return result;
+    }
+
+private:
+    static std::size_t index(int tile, int channel) { return static_cast<std::size_t>(3 * tile + channel); }
+
+    int side_, columns_ = 0, rows_ = 0;
+    std::vector<std::vector<double>> values_;
+};
+
+/// Reads tile data; see tests/data/reference.
+inline TileEstimates load_tiles(const std::string& path) {
+    TileEstimates result;
+    std::ifstream file(path);
+    file >> result.columns >> result.rows >> result.side;
+    const int count = result.columns * result.rows;
+    for (int tile = 0; tile < count; ++tile) {
+        Estimate e[3];
+        for (Estimate& channel : e) file >> channel.mean;
+        for (Estimate& channel : e) {
+            file >> channel.variance;
+            channel.freedom = result.side * result.side;
+        }
+        for (int c = 0; c < 3; ++c) {
+            result.tiles.push_back(e[c]);
+            result.whole[c].mean += e[c].mean / count;
+            result.whole[c].variance += e[c].variance / (double(count) * count);
+        }
+    }
+    if (!file || count < 1) throw Error(path + ": no tile data");
+    return result;
+}
+
+/// The outcome of a comparison of images: agreement unless something was less probable than `level`.
+struct Comparison {
+    double level = 0;     ///< of each single test
+    double smallest = 1;  ///< p-value
+    int tests = 0, worst_tile = -1, worst_channel = 0;
+    double ours = 0, theirs = 0;  ///< where it is worst
+    /// Sum over tiles of the square of the standardised luminance difference, standardised itself: about normal. It sees small
+    /// differences that are everywhere; `smallest` sees large ones at one place.
+    double spread = 0;
+
+    bool agree() const { return smallest > level && student_p(std::max(spread, 0.0), infinity) / 2 > level; }
+
+    friend std::ostream& operator<<(std::ostream& out, const Comparison& c) {
+        return out << "smallest p " << c.smallest << " of " << c.tests << " (level " << c.level << ") at tile " << c.worst_tile
+                   << " channel " << c.worst_channel << ": " << c.ours << " against " << c.theirs << "; spread " << c.spread;
+    }
+};
+
+/// Compares all tiles and the whole, in all channels. When the expectations are equal, it disagrees with a probability of at most
+/// `false_alarm`, if that is shared with `others` - 1 comparisons of the same size (Sidak; channels and the whole depend on the
+/// tiles, which only makes it rarer).
+inline Comparison compare(const TileEstimates& a, const TileEstimates& b, double false_alarm, int others = 1) {
+    Comparison result;
+    if (a.columns != b.columns || a.rows != b.rows) throw std::logic_error("tiles of different images");
+    result.tests = static_cast<int>(a.tiles.size()) + 4;
+    result.level = sidak(false_alarm, result.tests * others);
+    double sum = 0, expected = 0, variance = 0;
+    const auto test = [&](const Estimate& ours, const Estimate& theirs, int tile, int channel) {
+        const double p = welch_p(ours, theirs);
+        if (p < result.smallest) {
+            result.smallest = p;
+            result.worst_tile = tile;
+            result.worst_channel = channel;
+            result.ours = ours.mean;
+            result.theirs = theirs.mean;
+        }
+    };
+    for (std::size_t i = 0; i < a.tiles.size(); ++i) {
+        test(a.tiles[i], b.tiles[i], static_cast<int>(i) / 3, static_cast<int>(i) % 3);
+        if (i % 3 != 1) continue;  // green stands for the luminance: channels differ little
+        const Estimate difference = a.tiles[i] - b.tiles[i];
+        if (!(difference.variance > 0) || !(difference.freedom > 8)) continue;
+        // The moments of the square of Student's t.
+        const double f = difference.freedom, mean = std::isinf(f) ? 1 : f / (f - 2);
+        sum += difference.mean * difference.mean / difference.variance;
+        expected += mean;
+        variance += std::isinf(f) ? 2 : 2 * mean * mean * (f - 1) / (f - 4);
+    }
+    for (int c = 0; c < 3; ++c) test(a.whole[c], b.whole[c], -1, c);
+    if (variance > 0) result.spread = (sum - expected) / std::sqrt(variance);
+    return result;
+}
+
+/// The interval, of that confidence, of the relative bias of `ours`: its lower and upper end.
+struct BiasInterval {
+    double low = 0, high = 0;
+
+    BiasInterval(const Estimate& ours, const Estimate& truth, double confidence = 0.99) {
+        const Estimate difference = ours - truth;
+        const double half = student_quantile(1 - confidence, difference.freedom) * std::sqrt(difference.variance);
+        low = (difference.mean - half) / truth.mean;
+        high = (difference.mean + half) / truth.mean;
+    }
+
+    bool within(double bound) const { return low > -bound && high < bound; }
+
+    friend std::ostream& operator<<(std::ostream& out, const BiasInterval& b) {
+        return out << "bias between " << 100 * b.low << " % and " << 100 * b.high << " %";
+    }
+};
+
+}  // namespace lightswitch::test
