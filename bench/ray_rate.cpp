@@ -47,7 +47,7 @@ struct Recorder {
     ls::Rgb environment(const auto& d) const { return scene.environment(d); }
     auto sample_light(const auto& p, float c, const auto& u) const { return scene.sample_light(p, c, u); }
     auto light_pdf(const auto& p, const auto& w, const auto& h) const { return scene.light_pdf(p, w, h); }
-    auto environment_pdf(const auto& w) const { return scene.environment_pdf(w); }
+    auto environment_pdf(const auto& n, const auto& w) const { return scene.environment_pdf(n, w); }
     const auto& camera() const { return scene.camera(); }
     const auto& film() const { return scene.film(); }
 };

@@ -39,7 +39,8 @@ TEST_CASE("dispatch: positions of types in a list") {
 TEST_CASE("typed index: the limits, and empty") {
     CHECK_FALSE(static_cast<bool>(TypedIndex{}));
     for (const std::size_t kind : {std::size_t{0}, std::size_t{1}, std::size_t{17}, TypedIndex::max_kind})
-        for (const std::size_t position : {std::size_t{0}, std::size_t{1}, std::size_t{99999}, TypedIndex::max_position}) {
+        for (const std::size_t position :
+             {std::size_t{0}, std::size_t{1}, std::size_t{99999}, TypedIndex::max_position}) {
             const TypedIndex index(kind, position);
             CHECK(static_cast<bool>(index));
             CHECK(index.kind() == kind);

@@ -38,7 +38,8 @@ TEST_CASE("basis: orthonormal and right-handed around any unit vector") {
                 worst = std::max(worst, basis_error({0.0f * x, -0.0f, z == 0 ? 1.0f : z}));
             }
     for (int i = 0; i < 200000; ++i) {
-        const double angle = 6.28318530717958647692 * double(random.next()), tilt = std::pow(10, -8 * double(random.next()));
+        const double angle = 6.28318530717958647692 * double(random.next()),
+                     tilt = std::pow(10, -8 * double(random.next()));
         for (const double sign : {-1.0, 1.0}) {
             const DVec3 n(std::sin(tilt) * std::cos(angle), std::sin(tilt) * std::sin(angle), sign * std::cos(tilt));
             worst = std::max(worst, basis_error(Vec3(n)));

@@ -14,7 +14,8 @@ static_assert(Executor<SerialExecutor> && Executor<TbbExecutor>);
 
 TEST_CASE("parallel: every unit runs exactly once, for any number of threads") {
     const auto check = [](const auto& executor) {
-        for (const std::size_t n : {std::size_t{0}, std::size_t{1}, std::size_t{7}, std::size_t{1000}, std::size_t{100000}}) {
+        for (const std::size_t n :
+             {std::size_t{0}, std::size_t{1}, std::size_t{7}, std::size_t{1000}, std::size_t{100000}}) {
             std::vector<std::atomic<int>> runs(n);
             executor.for_each(n, [&](std::size_t i) { ++runs[i]; });
             std::size_t wrong = 0;
@@ -39,12 +40,13 @@ TEST_CASE("parallel: no more units at a time than threads, and more threads than
         std::atomic<int> now = 0, most = 0;
         executor.for_each(64, [&](std::size_t) {
             const int running = ++now;
-            for (int seen = most; seen < running && !most.compare_exchange_weak(seen, running);) {}
+            for (int seen = most; seen < running && !most.compare_exchange_weak(seen, running);) {
+            }
             std::this_thread::sleep_for(std::chrono::milliseconds(4));
             --now;
         });
         CHECK(most <= threads);
-        CHECK(most >= std::min(threads, 2));
+        CHECK(most >= std::min(threads, tbb::info::default_concurrency() + 1));
     }
 }
 
@@ -73,25 +75,24 @@ TEST_CASE("parallel: units may start parallel work of their own") {
 TEST_CASE("parallel: denormal numbers are zero while the guard lives, and what was set before comes back") {
     volatile float small = std::numeric_limits<float>::min();
     volatile float half = 0.5f;
-    const unsigned before = _mm_getcsr();
+    // Without the lowest six bits: they record what happened, and are no settings.
+    const auto settings = [] { return _mm_getcsr() & ~0x3fu; };
+    const unsigned before = settings();
     REQUIRE(small * half > 0);
     {
         const FlushDenormals guard;
-        CHECK((_mm_getcsr() & 0x8040u) == 0x8040u);
-        CHECK((_mm_getcsr() & ~0x8040u) == (before & ~0x8040u));
+        CHECK(settings() == (before | 0x8040u));
         CHECK(small * half == 0);
-        {
-            const FlushDenormals inner;
-        }
+        { const FlushDenormals inner; }
         CHECK(small * half == 0);
     }
-    CHECK(_mm_getcsr() == before);
+    CHECK(settings() == before);
     CHECK(small * half > 0);
     try {
         const FlushDenormals guard;
         throw 1;
     } catch (int) {
     }
-    CHECK(_mm_getcsr() == before);
+    CHECK(settings() == before);
 }
 #endif

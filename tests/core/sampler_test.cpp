@@ -95,7 +95,8 @@ TEST_CASE("sampler: 2^k iterations of one pixel are a (0,k,2)-net in each of the
     for (const int k : {0, 1, 2, 4, 7, 10, 12}) {
         const std::uint64_t n = std::uint64_t{1} << k;
         // Aligned blocks: the first one, a later one, and the last before the sequences start again.
-        for (const std::uint64_t first : {std::uint64_t{0}, 5 * n, (std::uint64_t{1} << 32) - n, 3 * n + (std::uint64_t{7} << 32)}) {
+        for (const std::uint64_t first :
+             {std::uint64_t{0}, 5 * n, (std::uint64_t{1} << 32) - n, 3 * n + (std::uint64_t{7} << 32)}) {
             if (k > 10 && first != 0) continue;
             for (const std::uint64_t pixel : {std::uint64_t{0}, std::uint64_t{123457}}) {
                 std::vector<std::vector<Vec2>> nets(IterationPoints::sobol_pairs, std::vector<Vec2>(n));
@@ -185,7 +186,8 @@ TEST_CASE("sampler: pixels, streams and seeds are uncorrelated") {
             for (const auto& c : {x[0], x[1], y[0], y[1]}) worst = std::max(worst, std::abs(c.sigmas()));
             smallest = std::min(smallest, square.p_value());
         };
-        for (const std::uint64_t lag : {1u, 2u, 3u, 16u, 255u, 256u, 1920u, 1u << 20}) compare(shared, 0, shared, 0, lag);
+        for (const std::uint64_t lag : {1u, 2u, 3u, 16u, 255u, 256u, 1920u, 1u << 20})
+            compare(shared, 0, shared, 0, lag);
         compare(shared, 0, shared, 1, 0);
         compare(shared, 0, other_seed, 0, 0);
         compare(shared, 0, far_seed, 0, 0);

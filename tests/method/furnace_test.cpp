@@ -57,9 +57,10 @@ LibraryDescription describe_sphere_in_white(const B& bsdf) {
 
 }  // namespace
 
-// Each comparison of N pixels at 5 standard errors gives a false alarm with probability N * 6e-7 if means are normal, and about
-// N * 2e-6 with the skewed sums here: all of this file together (some 80 000 pixels) less than 0.2.
-// Whole images, at 4.5 of their standard errors: 7e-6 each.
+// Pixels are compared at 6.5 of their own standard errors. For normal means that is never, but means of 256 geometric numbers
+// are skewed, and more so when divided by their own spread: simulated, one in 2e5 is 5 standard errors off and one in 1e7
+// 6.5, which makes a false alarm of less than 0.01 for all 80 000 pixels of this file together.
+// Whole images are compared at 4.5 of their standard errors: 7e-6 each, 3e-4 for all of them.
 
 TEST_CASE("a furnace is 1 / (1 - albedo) everywhere") {
     for (const float albedo : {0.2f, 0.5f, 0.8f}) {
@@ -67,12 +68,12 @@ TEST_CASE("a furnace is 1 / (1 - albedo) everywhere") {
         const double expected = 1 / (1 - double(albedo));
         CAPTURE(albedo);
         // With roulette from the first bounce on the number of bounces is geometric, and its mean close to normal.
-        const auto path = deviation(scene, PathTracer{.rr_depth = 0}, 512, expected);
-        CHECK(path.worst < 5);
+        const auto path = deviation(scene, PathTracer{.rr_depth = 0}, 256, expected);
+        CHECK(path.worst < 6.5);
         CHECK(std::abs(path.whole) < 4.5);
         CHECK(std::abs(path.bias) < 2e-3);
-        const auto nee = deviation(scene, PathTracerNee{.rr_depth = 0}, 512, expected);
-        CHECK(nee.worst < 5);
+        const auto nee = deviation(scene, PathTracerNee{.rr_depth = 0}, 256, expected);
+        CHECK(nee.worst < 6.5);
         CHECK(std::abs(nee.whole) < 4.5);
         CHECK(std::abs(nee.bias) < 2e-3);
         // The default depth of roulette, where single pixels are far from normal but whole images are not.
@@ -91,8 +92,8 @@ TEST_CASE("a furnace cut off at a depth is the partial sum of the geometric seri
             CAPTURE(depth);
             // No roulette up to five bounces: nothing is random for the path tracer.
             CHECK(std::abs(deviation(scene, PathTracer{.max_depth = depth}, 2, expected).bias) < 1e-6);
-            const auto nee = deviation(scene, PathTracerNee{.max_depth = depth}, 256, expected);
-            CHECK(nee.worst < 5);
+            const auto nee = deviation(scene, PathTracerNee{.max_depth = depth}, 64, expected);
+            CHECK(nee.worst < 6.5);
             CHECK(std::abs(nee.whole) < 4.5);
             if (depth == 1) CHECK(std::abs(nee.bias) < 1e-7);
         }
@@ -106,10 +107,10 @@ TEST_CASE("a luminous sphere seen from inside is a furnace too") {
     description.film.width = description.film.height = 32;
     const FullScene scene = build(description);
     const auto path = deviation(scene, PathTracer{.rr_depth = 0}, 512, 2.5);
-    CHECK(path.worst < 5);
+    CHECK(path.worst < 6.5);
     CHECK(std::abs(path.whole) < 4.5);
     const auto nee = deviation(scene, PathTracerNee{.rr_depth = 0}, 512, 2.5);
-    CHECK(nee.worst < 5);
+    CHECK(nee.worst < 6.5);
     CHECK(std::abs(nee.whole) < 4.5);
     CHECK(std::abs(deviation(scene, PathTracerNee{.max_depth = 2}, 256, 1.6).whole) < 4.5);
 }
@@ -118,9 +119,9 @@ TEST_CASE("white things vanish in a white environment") {
     const auto test = [](const auto& bsdf) {
         const FullScene scene = build(describe_sphere_in_white(bsdf));
         const auto path = deviation(scene, PathTracer{}, 64, 1);
-        CHECK(path.worst < 5);
+        CHECK(path.worst < 6.5);
         const auto nee = deviation(scene, PathTracerNee{}, 256, 1);
-        CHECK(nee.worst < 5);
+        CHECK(nee.worst < 6.5);
         CHECK(std::abs(nee.whole) < 4.5);
     };
     test(Lambert{Rgb(1)});
@@ -138,7 +139,7 @@ TEST_CASE("rough metal returns no more than it receives, and polished metal near
             // Of the path tracer every single sample is at most 1; with light sampling 5 standard errors, as above.
             for (const Rgb& p : image.pixels()) CHECK(p.y < 1.2f);
             CHECK(image.mean().y < 1.0005);
-            CHECK(image.mean().y > (alpha < 0.2f ? 0.99 : 0.6));
+            CHECK(image.mean().y > (alpha < 0.2f ? 0.98 : 0.6));
         }
         const Image path = render(scene, PathTracer{}, {.samples = 64});
         for (const Rgb& p : path.pixels()) CHECK(p.y <= 1 + 1e-5f);

@@ -47,6 +47,12 @@ public:
     constexpr explicit operator bool() const { return bits_ != empty; }
     constexpr std::size_t kind() const { return bits_ >> 27; }
     constexpr std::size_t position() const { return bits_ & max_position; }
+    /// The element of the same type that comes `count` after this one.
+    constexpr TypedIndex next(std::uint32_t count) const {
+        TypedIndex result;
+        result.bits_ = bits_ + count;
+        return result;
+    }
 
 private:
     static constexpr std::uint32_t empty = 0xffffffffu;

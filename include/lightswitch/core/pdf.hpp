@@ -38,6 +38,7 @@ inline AreaPdf to_area(SolidAnglePdf p, float distance_squared, float abs_cosine
 /// (power heuristic with exponent 2; Veach 1997, section 9.2.3). Both 0 gives 0; an infinite `ours` gives 1.
 inline float power_heuristic(SolidAnglePdf ours, SolidAnglePdf other) {
     if (!(ours.value > 0)) return 0;
+    if (ours.value == infinity) return 1;
     const float ratio = other.value / ours.value;
     return 1 / (1 + ratio * ratio);
 }

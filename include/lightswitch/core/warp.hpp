@@ -67,7 +67,7 @@ inline AreaPdf uniform_disk_pdf(float radius = 1) { return {inv_pi / (radius * r
 inline SolidAnglePdf cosine_hemisphere_pdf(float cos_theta) { return {std::max(cos_theta, 0.0f) * inv_pi}; }
 
 /// Uniform unit vector: the concentric disk wrapped around the sphere (Lambert's azimuthal equal-area projection).
-inline Vec3 uniform_sphere(const Vec2& u) {
+[[gnu::always_inline]] inline Vec3 uniform_sphere(const Vec2& u) {
     const auto [p, height_squared] = detail::concentric(u);
     const float scale = 2 * safe_sqrt(height_squared);
     return {p.x * scale, p.y * scale, 2 * height_squared - 1};
@@ -76,7 +76,7 @@ inline SolidAnglePdf uniform_sphere_pdf() { return {0.25f * inv_pi}; }
 
 /// Uniform unit vector in the cone around +z of half angle theta_max, given as 1 - cos(theta_max) in (0, 2], which
 /// keeps its digits however narrow the cone is.
-inline Vec3 uniform_cone(const Vec2& u, float one_minus_cos_theta_max) {
+[[gnu::always_inline]] inline Vec3 uniform_cone(const Vec2& u, float one_minus_cos_theta_max) {
     const auto [p, height_squared] = detail::concentric(u);
     const float one_minus_z = one_minus_cos_theta_max * (1 - height_squared);
     const float scale = safe_sqrt(one_minus_cos_theta_max * (2 - one_minus_z));

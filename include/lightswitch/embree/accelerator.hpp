@@ -86,45 +86,49 @@ private:
 
 /// What a ray hit, as Embree says it.
 struct Hit {
-    std::uint32_t geometry;   ///< `Accelerator::triangle_geometry` or `sphere_geometry`
-    std::uint32_t primitive;  ///< index among the triangles or spheres
+    std::uint32_t geometry;   ///< what `Accelerator::add` returned
+    std::uint32_t primitive;  ///< index among the triangles or spheres of that geometry
     float u, v;               ///< barycentric weights of a triangle's second and third corner
     float distance;           ///< in multiples of the ray's direction
+    Vec3 normal;              ///< of a triangle, on the side from which its corners run counter-clockwise; any length
 };
 
-/// A committed, immutable Embree scene. Tracing is safe from any number of threads.
+/// An Embree scene: geometries are added, then it is committed, and then it is immutable and rays may be traced from any number of
+/// threads.
 class Accelerator {
 public:
-    static constexpr std::uint32_t triangle_geometry = 0, sphere_geometry = 1;
-
     struct SphereData {
         Vec3 center;
         float radius;
     };
 
-    /// Copies the data into Embree's own (padded) buffers and builds. `robust` asks Embree for watertight edges. Either list
-    /// may be empty.
-    Accelerator(const std::string& config, bool robust, std::span<const Vec3> positions,
-                std::span<const std::array<std::uint32_t, 3>> triangles, std::span<const SphereData> spheres)
-        : device_(config) {
-        const auto start = std::chrono::steady_clock::now();
+    /// `config` as for `Device`; `robust` asks Embree for watertight edges.
+    explicit Accelerator(const std::string& config = "", bool robust = false) : device_(config) {
         scene_.reset(rtcNewScene(device_.get()));
         if (robust) rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
         device_.check("making a scene");
-        if (!triangles.empty()) {
-            const Geometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
-            fill(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, positions);
-            fill(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangles);
-            attach(geometry, triangle_geometry);
-        }
-        if (!spheres.empty()) {
-            const Geometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_SPHERE_POINT));
-            fill(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, spheres);
-            attach(geometry, sphere_geometry);
-        }
+    }
+
+    /// Copies a triangle mesh into Embree's own (padded) buffers; returns its number, counted from 0.
+    std::uint32_t add(std::span<const Vec3> positions, std::span<const std::array<std::uint32_t, 3>> triangles) {
+        const Geometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
+        fill(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, positions);
+        fill(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangles);
+        return attach(geometry);
+    }
+
+    /// The same for spheres.
+    std::uint32_t add(std::span<const SphereData> spheres) {
+        const Geometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_SPHERE_POINT));
+        fill(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, spheres);
+        return attach(geometry);
+    }
+
+    /// Builds the acceleration structure.
+    void commit() {
+        const auto start = std::chrono::steady_clock::now();
         rtcCommitScene(scene_.get());
-        device_.check("building the acceleration structure of " + std::to_string(triangles.size()) + " triangles and " +
-                      std::to_string(spheres.size()) + " spheres");
+        device_.check("building the acceleration structure of " + std::to_string(geometries_) + " shapes");
         build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }
 
@@ -136,7 +140,8 @@ public:
         query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
         ++ray_count.intersect;
         embree::intersect(scene_.get(), query);
-        hit = {query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar};
+        hit = {query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar,
+               Vec3(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z)};
         return hit.geometry != RTC_INVALID_GEOMETRY_ID;
     }
 
@@ -171,12 +176,13 @@ private:
         std::copy(data.begin(), data.end(), static_cast<T*>(buffer));
     }
 
-    void attach(const Geometry& geometry, std::uint32_t id) {
+    std::uint32_t attach(const Geometry& geometry) {
         // Embree 4 gives geometries mask 1 and tests masks when built so; all ones is right for every version.
         rtcSetGeometryMask(geometry.get(), 0xffffffffu);
         rtcCommitGeometry(geometry.get());
-        rtcAttachGeometryByID(scene_.get(), geometry.get(), id);
+        rtcAttachGeometryByID(scene_.get(), geometry.get(), geometries_);
         device_.check("adding a geometry");
+        return geometries_++;
     }
 
     /// Writes origin and direction as whole vectors: Embree reads them so, and a read of four separate writes would stall.
@@ -195,6 +201,7 @@ private:
 
     Device device_;
     std::unique_ptr<RTCSceneTy, ReleaseScene> scene_;
+    std::uint32_t geometries_ = 0;
     double build_seconds_ = 0;
 };
 

@@ -5,7 +5,8 @@
 
 namespace lightswitch {
 
-/// The same radiance from all directions beyond the scene. Sampled uniformly over the sphere.
+/// The same radiance from all directions beyond the scene. Sampled by the cosine over the hemisphere that the
+/// surface sees, which is exact for a diffuse surface that nothing shadows.
 struct ConstantEnvironment {
     static constexpr bool infinite = true;
 
@@ -16,12 +17,19 @@ struct ConstantEnvironment {
 
     Rgb radiance(const Vec3&) const { return value; }
 
-    LightSample sample(const SurfacePoint& from, const Vec2& u) const {
-        const Vec3 wi = uniform_sphere(u);
-        return {.wi = wi, .radiance = value, .pdf = uniform_sphere_pdf(), .dirac = false, .visibility = from.spawn(wi)};
+    [[gnu::always_inline]] LightSample sample(const SurfacePoint& from, const Vec2& u) const {
+        const Vec3 local = cosine_hemisphere(u);
+        const Vec3 wi = Basis(from.facing_normal()).to_world(local);
+        return {.wi = wi,
+                .radiance = value,
+                .pdf = cosine_hemisphere_pdf(local.z),
+                .dirac = false,
+                .visibility = from.spawn(wi)};
     }
 
-    SolidAnglePdf pdf(const Vec3&) const { return uniform_sphere_pdf(); }
+    [[gnu::always_inline]] SolidAnglePdf pdf(const Vec3& normal, const Vec3& wi) const {
+        return cosine_hemisphere_pdf(dot(normal, wi));
+    }
 };
 
 }  // namespace lightswitch

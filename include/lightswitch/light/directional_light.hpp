@@ -14,7 +14,7 @@ struct DirectionalLight {
 
     double power() const { return double(luminance(irradiance)) * double(pi) * double(square(scene_radius)); }
 
-    LightSample sample(const SurfacePoint& from, const Vec2&) const {
+    [[gnu::always_inline]] LightSample sample(const SurfacePoint& from, const Vec2&) const {
         return {.wi = towards, .radiance = irradiance, .pdf = {1}, .dirac = true, .visibility = from.spawn(towards)};
     }
 };

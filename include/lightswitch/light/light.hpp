@@ -39,11 +39,12 @@ concept AreaLight = Light<L> && requires(const L light, const SurfacePoint point
     { light.pdf(position, direction, point) } -> std::same_as<SolidAnglePdf>;
 };
 
-/// A light that surrounds the scene. `radiance(wi)` arrives from the direction `wi`, chosen by `sample` with density `pdf`.
+/// A light that surrounds the scene. `radiance(wi)` arrives from the direction `wi`, which `sample`, at a
+/// point whose `facing_normal()` is `normal`, chooses with density `pdf(normal, wi)`.
 template <class L>
 concept EnvironmentLight = Light<L> && requires(const L light, const Vec3 direction) {
     { light.radiance(direction) } -> std::same_as<Rgb>;
-    { light.pdf(direction) } -> std::same_as<SolidAnglePdf>;
+    { light.pdf(direction, direction) } -> std::same_as<SolidAnglePdf>;
 };
 
 }  // namespace lightswitch

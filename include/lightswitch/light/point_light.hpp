@@ -13,7 +13,7 @@ struct PointLight {
 
     double power() const { return double(luminance(intensity)) * 4 * double(pi); }
 
-    LightSample sample(const SurfacePoint& from, const Vec2&) const {
+    [[gnu::always_inline]] LightSample sample(const SurfacePoint& from, const Vec2&) const {
         const Vec3 to_light = position - from.position;
         const float distance2 = length_squared(to_light);
         return {.wi = to_light * (1 / std::sqrt(distance2)),

@@ -25,7 +25,7 @@ struct SphereLight {
         return dot(at.normal, direction) > 0 ? emission : Rgb(0);
     }
 
-    LightSample sample(const SurfacePoint& from, const Vec2& u) const {
+    [[gnu::always_inline]] LightSample sample(const SurfacePoint& from, const Vec2& u) const {
         const Vec3 to_center = center - from.position;
         const float distance2 = length_squared(to_center);
         if (inward) return sample_by_area(from, u);
@@ -45,7 +45,7 @@ struct SphereLight {
                 .visibility = from.segment_to(center + (radius + offset) * normal)};
     }
 
-    SolidAnglePdf pdf(const Vec3& from, const Vec3& wi, const SurfacePoint& hit) const {
+    [[gnu::always_inline]] SolidAnglePdf pdf(const Vec3& from, const Vec3& wi, const SurfacePoint& hit) const {
         const float distance2 = length_squared(center - from);
         if (!inward) return distance2 > square(radius) ? uniform_cone_pdf(cone(distance2)) : SolidAnglePdf{};
         return to_solid_angle(area_pdf(), length_squared(hit.position - from), std::abs(dot(wi, hit.normal)));

@@ -23,13 +23,13 @@ struct PathTracerNee {
         // could not: at the camera and after a specular bounce.
         bool light_sampled = false;
         SolidAnglePdf pdf;
-        Vec3 from(0);
+        Vec3 from(0), from_normal(0);
         for (int depth = 1;; ++depth) {
             const auto hit = scene.intersect(ray);
             if (!hit) {
                 const Rgb radiance = scene.environment(ray.direction);
                 const float weight =
-                    light_sampled ? power_heuristic(pdf, scene.environment_pdf(ray.direction)) : 1;
+                    light_sampled ? power_heuristic(pdf, scene.environment_pdf(from_normal, ray.direction)) : 1;
                 sum += throughput * radiance * weight;
                 break;
             }
@@ -48,14 +48,22 @@ struct PathTracerNee {
             const Vec3 local_wo = basis.to_local(wo);
             // One number chooses the light and the lobe: they enter different terms of the sum, so nothing correlates.
             const Vec2 direction = sampler.next_2d(), choices = sampler.next_2d(), on_light = sampler.next_2d();
-            Connection connection;
+            const bool specular = scene.with_bsdf(*hit, [](const auto& bsdf) { return bsdf.specular; });
+            LightSample light;
+            if (!specular) light = scene.sample_light(*hit, choices.x, on_light);
+            const Vec3 local_wi = basis.to_local(light.wi);
+            BsdfValue scattering;
             const auto scattered = scene.with_bsdf(*hit, [&](const auto& bsdf) __attribute__((always_inline)) {
                 if constexpr (!std::remove_cvref_t<decltype(bsdf)>::specular)
-                    connection = connect(scene, *hit, basis, local_wo, bsdf, choices.x, on_light);
+                    scattering = bsdf.evaluate(local_wo, local_wi, Transport::radiance);
                 return bsdf.sample(local_wo, Vec3(direction, choices.x), Transport::radiance);
             });
-            if (!is_black(connection.contribution) && !scene.occluded(connection.visibility))
-                sum += throughput * connection.contribution;
+            // Traced after both directions are known: the processor works on the next ray meanwhile.
+            if (light.pdf.value > 0 && !is_black(scattering.value) && !scene.occluded(light.visibility)) {
+                const float weight = light.dirac ? 1 : power_heuristic(light.pdf, scattering.pdf);
+                sum += throughput * scattering.value * light.radiance *
+                       (std::abs(local_wi.z) / light.pdf.value * weight);
+            }
             if (!scattered) break;
             throughput *= scattered->weight;
             eta *= scattered->eta;
@@ -63,28 +71,10 @@ struct PathTracerNee {
             light_sampled = !scattered->specular;
             pdf = scattered->pdf;
             from = hit->position;
+            from_normal = hit->facing_normal();
             ray = hit->spawn(basis.to_world(scattered->wi));
         }
         return sum;
-    }
-
-private:
-    struct Connection {
-        Rgb contribution{0};  // if nothing is in between
-        Ray visibility;
-    };
-
-    /// One sampled point of one light, weighted against meeting it by sampling the BSDF.
-    [[gnu::always_inline]] static Connection connect(const auto& scene, const SurfacePoint& at, const Basis& basis,
-                                                     const Vec3& local_wo, const auto& bsdf, float which_light,
-                                                     const Vec2& on_light) {
-        const LightSample light = scene.sample_light(at, which_light, on_light);
-        if (!(light.pdf.value > 0)) return {};
-        const Vec3 local_wi = basis.to_local(light.wi);
-        const BsdfValue scattering = bsdf.evaluate(local_wo, local_wi, Transport::radiance);
-        const float weight = light.dirac ? 1 : power_heuristic(light.pdf, scattering.pdf);
-        return {.contribution = scattering.value * light.radiance * (std::abs(local_wi.z) / light.pdf.value * weight),
-                .visibility = light.visibility};
     }
 };
 

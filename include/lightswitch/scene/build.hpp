@@ -34,8 +34,10 @@ class SceneAssembly<Bsdfs<B...>, Lights<L...>> {
 public:
     using BuiltScene = Scene<Bsdfs<B...>, Lights<L...>>;
 
+    explicit SceneAssembly(const BuildOptions& options) : accelerator_(options.embree_config, options.robust) {}
+
     template <class Material>
-    BuiltScene build(const SceneDescription<Material>& description, const BuildOptions& options) {
+    BuiltScene build(const SceneDescription<Material>& description) {
         const auto start = std::chrono::steady_clock::now();
         check(description);
         const Bounds bounds = find_bounds(description);
@@ -49,19 +51,19 @@ public:
         for (const auto& shape : description.shapes)
             std::visit([&](const auto& geometry) { add(geometry, shape); }, shape.geometry);
         finish_lights();
-        embree::Accelerator accelerator(options.embree_config, options.robust, positions_, indices_, spheres_);
+        if (!spheres_.empty()) accelerator_.add(spheres_);
+        accelerator_.commit();
         auto& statistics = data_.statistics;
-        statistics.triangles = data_.triangles.size();
         statistics.spheres = data_.spheres.size();
-        statistics.embree_bytes = accelerator.memory();
-        statistics.embree_build_seconds = accelerator.build_seconds();
+        statistics.embree_bytes = accelerator_.memory();
+        statistics.embree_build_seconds = accelerator_.build_seconds();
         statistics.scene_bytes = static_cast<std::int64_t>(
-            data_.triangles.size() * sizeof(TriangleRecord) + data_.spheres.size() * sizeof(SphereRecord) +
+            data_.meshes.size() * sizeof(MeshRecord) + data_.spheres.size() * sizeof(SphereRecord) +
             data_.shading_normals.size() * sizeof(data_.shading_normals[0]) +
             ((std::get<std::vector<L>>(data_.lights).size() * sizeof(L)) + ... + 0));
         statistics.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         Camera camera(description.camera, description.film, data_.space, radius_);
-        return {std::move(data_), std::move(camera), std::move(accelerator)};
+        return {std::move(data_), std::move(camera), std::move(accelerator_)};
     }
 
 private:
@@ -145,55 +147,60 @@ private:
 
     template <class Shape>
     void add(const Mesh& mesh, const Shape& shape) {
-        const std::size_t base = positions_.size();
-        if (base + mesh.positions.size() > 0xffffffffu) fail(shape.origin, "too many vertices for one scene");
-        for (const DVec3& p : mesh.positions) positions_.push_back(Vec3(data_.space.point(p)));
+        std::vector<Vec3> positions(mesh.positions.size());
+        std::transform(mesh.positions.begin(), mesh.positions.end(), positions.begin(),
+                       [&](const DVec3& p) { return Vec3(data_.space.point(p)); });
+        std::vector<std::array<std::uint32_t, 3>> triangles;
+        triangles.reserve(mesh.triangles.size());
+        MeshRecord record{.material = materials_[shape.material],
+                          .first_light = {},
+                          .intersection_error = 0,
+                          .shading_normals = MeshRecord::flat};
+        if (!mesh.normals.empty()) record.shading_normals = static_cast<std::uint32_t>(data_.shading_normals.size());
         Emitter emitter{.strength = shape.emission.value_or(Rgb(0))};
         DVec3 centroid(0);
-        TypedIndex first_light;
         for (const auto& corners : mesh.triangles) {
-            std::array<std::uint32_t, 3> index;
-            for (std::size_t i = 0; i < 3; ++i) index[i] = static_cast<std::uint32_t>(base + corners[i]);
-            const DVec3 a = positions_[index[0]], b = positions_[index[1]], c = positions_[index[2]];
+            const DVec3 a = positions[corners[0]], b = positions[corners[1]], c = positions[corners[2]];
             const DVec3 cross = glm::cross(b - a, c - a);
             const double twice_area = glm::length(cross);
             if (!(twice_area > 0)) {  // nothing can hit it, and it has no normal
                 ++data_.statistics.degenerate_triangles;
                 continue;
             }
-            const Vec3 normal(cross / twice_area);
-            TriangleRecord record{.corner = Vec3(a),
-                                  .offset = triangle_offset(a, b, c, twice_area),
-                                  .edge1 = Vec3(b - a),
-                                  .material = materials_[shape.material],
-                                  .edge2 = Vec3(c - a),
-                                  .light = {},
-                                  .normal = normal,
-                                  .shading_normals = TriangleRecord::flat};
-            if (!mesh.normals.empty()) {
-                record.shading_normals = static_cast<std::uint32_t>(data_.shading_normals.size());
+            triangles.push_back(corners);
+            record.intersection_error = std::max(record.intersection_error, intersection_error(a, b, c, twice_area));
+            if (!mesh.normals.empty())
                 data_.shading_normals.push_back({Vec3(glm::normalize(mesh.normals[corners[0]])),
                                                  Vec3(glm::normalize(mesh.normals[corners[1]])),
                                                  Vec3(glm::normalize(mesh.normals[corners[2]]))});
-            }
             if (shape.emission) {
                 const double area = twice_area / 2;
-                record.light = add_light(TriangleLight{record.corner, record.edge1, record.edge2, normal, *shape.emission,
-                                                       AreaPdf{static_cast<float>(1 / area)}, record.offset},
-                                         shape.origin);
-                if (emitter.light_count++ == 0) first_light = record.light;
+                const Vec3 normal(cross / twice_area);
+                const TypedIndex light = add_light(
+                    TriangleLight{.corner = Vec3(a),
+                                  .edge1 = Vec3(b - a),
+                                  .edge2 = Vec3(c - a),
+                                  .normal = normal,
+                                  .emission = *shape.emission,
+                                  .density = {static_cast<float>(1 / area)},
+                                  .offset = intersection_error(a, b, c, twice_area) + position_error(a, b, c, normal)},
+                    shape.origin);
+                if (emitter.light_count++ == 0) record.first_light = light;
                 centroid += (a + b + c) * (area / 3);
                 emitter.vector_area += normal * float(area);
                 emitter.area += float(area);
             }
-            data_.triangles.push_back(record);
-            indices_.push_back(index);
         }
-        if (!shape.emission) return;
-        if (!(emitter.area > 0)) fail(shape.origin, "the light has no area");
-        emitter.position = Vec3(centroid / double(emitter.area));
-        pending_.push_back({first_light, emitter.light_count});
-        data_.emitters.push_back(emitter);
+        if (shape.emission) {
+            if (!(emitter.area > 0)) fail(shape.origin, "the light has no area");
+            emitter.position = Vec3(centroid / double(emitter.area));
+            pending_.push_back({record.first_light, emitter.light_count});
+            data_.emitters.push_back(emitter);
+        }
+        if (triangles.empty()) return;
+        data_.statistics.triangles += triangles.size();
+        accelerator_.add(positions, triangles);
+        data_.meshes.push_back(record);
     }
 
     template <class Shape>
@@ -219,18 +226,20 @@ private:
         spheres_.push_back({record.center, record.radius});
     }
 
-    /// Bound on the distance between the point that u and v give, the plane of the triangle, and the plane as Embree's
-    /// intersection test sees it. The first term is the rounding of the interpolated position across the plane (pbrt-v4,
-    /// section 6.8.4: three products and sums of coordinates); the second the rounding of Embree's dot product of the edge
-    /// to the origin with the normal, which grows with how thin the triangle is.
-    static float triangle_offset(const DVec3& a, const DVec3& b, const DVec3& c, double twice_area) {
-        const DVec3 normal = glm::abs(glm::cross(b - a, c - a)) / twice_area;
-        const DVec3 largest = glm::max(glm::abs(a), glm::max(glm::abs(b), glm::abs(c)));
+    /// Bound on how far from a triangle's plane Embree may see it, for a ray that starts on the plane: the rounding of the dot
+    /// product of the normal with the edge from a corner to the origin. It grows with the size of the triangle, and with how thin
+    /// it is, because then the normal itself is a difference of large numbers.
+    static float intersection_error(const DVec3& a, const DVec3& b, const DVec3& c, double twice_area) {
         const double edge1 = glm::length(b - a), edge2 = glm::length(c - a);
         const double longest = std::max(edge1, std::max(edge2, glm::length(c - b)));
         const double thinness = std::min(edge1 * edge2 / twice_area, 16.0);
-        return static_cast<float>(double(gamma_bound(8)) * glm::dot(normal, largest) +
-                                  double(gamma_bound(4)) * longest * thinness);
+        return static_cast<float>(double(gamma_bound(4)) * longest * thinness);
+    }
+
+    /// Bound on how far from the plane a point lies that is interpolated between the corners (pbrt-v4, section 6.8.4).
+    static float position_error(const DVec3& a, const DVec3& b, const DVec3& c, const Vec3& normal) {
+        const DVec3 largest = glm::max(glm::abs(a), glm::max(glm::abs(b), glm::abs(c)));
+        return static_cast<float>(double(gamma_bound(8)) * glm::dot(glm::abs(DVec3(normal)), largest));
     }
 
     /// The same for a sphere: rounding of the centre, of the projected point, and of Embree's discriminant.
@@ -248,9 +257,8 @@ private:
     double radius_ = 1;
     std::vector<TypedIndex> materials_;
     std::vector<PendingEmitter> pending_;
-    std::vector<Vec3> positions_;
-    std::vector<std::array<std::uint32_t, 3>> indices_;
     std::vector<embree::Accelerator::SphereData> spheres_;
+    embree::Accelerator accelerator_;
 };
 
 }  // namespace detail
@@ -261,7 +269,7 @@ private:
 /// type has no room for it. Needs memory of about 100 bytes per triangle beside what Embree takes.
 template <class BsdfList, class LightList = AllLights, class Material>
 Scene<BsdfList, LightList> build_scene(const SceneDescription<Material>& description, const BuildOptions& options = {}) {
-    return detail::SceneAssembly<BsdfList, LightList>().build(description, options);
+    return detail::SceneAssembly<BsdfList, LightList>(options).build(description);
 }
 
 }  // namespace lightswitch

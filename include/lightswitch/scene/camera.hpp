@@ -27,15 +27,19 @@ public:
         position_ = space.point(DVec3(m[3]));
         const double distance = glm::length(position_);
         exact_ = distance > 4 * radius;
-        unclipped_ = near_ == 0 && far_ == std::numeric_limits<double>::infinity();
         set_film(description, film);
     }
 
     /// The ray through `pixel` (columns and rows from the top left corner; centres at halves). `lens` in [0,1)^2 is used only
     /// by a camera with an aperture.
     Ray ray(const Vec2& pixel, const Vec2& lens) const {
-        if (exact_ || lens_radius_ > 0 || !unclipped_) return general_ray(pixel, lens);
-        return {.origin = origin_, .direction = normalize(corner_ + pixel.x * step_x_ + pixel.y * step_y_)};
+        if (exact_ || lens_radius_ > 0) return general_ray(pixel, lens);
+        const Vec3 along = corner_ + pixel.x * step_x_ + pixel.y * step_y_;
+        const float per_axis = std::sqrt(length_squared(along));
+        return {.origin = origin_,
+                .direction = along * (1 / per_axis),
+                .near = per_axis * static_cast<float>(near_),
+                .far = per_axis * static_cast<float>(far_)};
     }
 
     bool has_lens() const { return lens_radius_ > 0; }
@@ -87,7 +91,7 @@ private:
     }
 
     Vec3 origin_, corner_, step_x_, step_y_;
-    bool exact_ = false, unclipped_ = true;
+    bool exact_ = false;
     int width_ = 0, height_ = 0;
     double far_away_radius_;
     RenderSpace space_;

@@ -48,16 +48,13 @@ struct SceneStatistics {
 
 namespace detail {
 
-/// All that a ray needs to know about the triangle that it hit: one cache line.
-struct alignas(64) TriangleRecord {
-    Vec3 corner;
-    float offset;
-    Vec3 edge1;
+/// What a hit on a triangle mesh needs beyond what Embree says. There is one per mesh and nothing per triangle, so that a hit
+/// costs no memory access that is not in a cache already.
+struct MeshRecord {
     TypedIndex material;
-    Vec3 edge2;
-    TypedIndex light;
-    Vec3 normal;
-    std::uint32_t shading_normals;  ///< index of three normals, or `flat`
+    TypedIndex first_light;         ///< of the mesh's triangles, in their order; empty when it does not shine
+    float intersection_error;       ///< see `SceneAssembly::intersection_error`
+    std::uint32_t shading_normals;  ///< where its triples of normals begin, or `flat`
     static constexpr std::uint32_t flat = 0xffffffffu;
 };
 
@@ -79,7 +76,7 @@ struct SceneData<Bsdfs<B...>, Lights<L...>> {
     std::string camera_id;
     RenderSpace space;
     FilmDescription film;
-    std::vector<TriangleRecord> triangles;
+    std::vector<MeshRecord> meshes;  ///< by Embree's geometry number; the spheres come after them
     std::vector<std::array<Vec3, 3>> shading_normals;
     std::vector<SphereRecord> spheres;
     std::tuple<std::vector<B>...> bsdfs;
@@ -114,8 +111,8 @@ public:
         Maybe<SurfacePoint> point;
         embree::Hit hit;
         if (accelerator_.intersect(ray, hit)) {
-            if (hit.geometry == embree::Accelerator::triangle_geometry) [[likely]]
-                locate_on_triangle(hit, point.emplace());
+            if (hit.geometry < data_.meshes.size()) [[likely]]
+                locate_on_triangle(ray, hit, point.emplace());
             else
                 locate_on_sphere(ray, hit, point.emplace());
         }
@@ -176,11 +173,12 @@ public:
         return pdf * data_.light_choice.probability(light_number(hit.light));
     }
 
-    /// The density with which `sample_light` chooses the direction `wi` through the environment.
-    SolidAnglePdf environment_pdf(const Vec3& wi) const {
+    /// The density with which `sample_light`, at a point whose `facing_normal()` is `normal`, chooses the direction `wi` through the
+    /// environment.
+    SolidAnglePdf environment_pdf(const Vec3& normal, const Vec3& wi) const {
         SolidAnglePdf sum;
         for_each_environment([&](std::size_t number, const auto& light) __attribute__((always_inline)) {
-            sum.value += light.pdf(wi).value * data_.light_choice.probability(number);
+            sum.value += light.pdf(normal, wi).value * data_.light_choice.probability(number);
         });
         return sum;
     }
@@ -214,18 +212,23 @@ public:
     const SceneStatistics& statistics() const { return data_.statistics; }
 
 private:
-    [[gnu::always_inline]] void locate_on_triangle(const embree::Hit& hit, SurfacePoint& point) const {
-        const detail::TriangleRecord& t = data_.triangles[hit.primitive];
-        point.position = t.corner + hit.u * t.edge1 + hit.v * t.edge2;
-        point.normal = t.normal;
-        point.shading_normal = t.normal;
-        point.offset = t.offset;
+    [[gnu::always_inline]] void locate_on_triangle(const Ray& ray, const embree::Hit& hit, SurfacePoint& point) const {
+        const detail::MeshRecord& mesh = data_.meshes[hit.geometry];
+        const Vec3 step = hit.distance * ray.direction;
+        point.position = ray.origin + step;
+        point.normal = normalize(hit.normal);
+        point.shading_normal = point.normal;
+        // Rounding of the sum above and of the distance, both across the surface, grows with what was added up.
+        const Vec3 n = glm::abs(point.normal);
+        point.offset = mesh.intersection_error +
+                       gamma_bound(6) * (dot(n, glm::abs(ray.origin)) + max_component(glm::abs(step)));
+        point.wo = -ray.direction;
         point.distance = hit.distance;
-        point.material = t.material;
-        point.light = t.light;
-        if (t.shading_normals != detail::TriangleRecord::flat) {
-            const auto& n = data_.shading_normals[t.shading_normals];
-            const Vec3 sum = (1 - hit.u - hit.v) * n[0] + hit.u * n[1] + hit.v * n[2];
+        point.material = mesh.material;
+        point.light = mesh.first_light ? mesh.first_light.next(hit.primitive) : TypedIndex();
+        if (mesh.shading_normals != detail::MeshRecord::flat) {
+            const auto& normals = data_.shading_normals[mesh.shading_normals + hit.primitive];
+            const Vec3 sum = (1 - hit.u - hit.v) * normals[0] + hit.u * normals[1] + hit.v * normals[2];
             const float length2 = length_squared(sum);
             if (length2 > 0) point.shading_normal = sum * (1 / std::sqrt(length2));
         }
@@ -239,6 +242,7 @@ private:
         point.normal = s.side * outward;
         point.shading_normal = point.normal;
         point.offset = s.offset;
+        point.wo = -ray.direction;
         point.distance = hit.distance;
         point.material = s.material;
         point.light = s.light;
