@@ -46,7 +46,7 @@ inline void stretch_to_unit_box(GreyDescription& scene) {
 inline SurfacePoint free_point(const GreyScene& scene, const DVec3& position, const Vec3& normal = {0, 0, 1}) {
     SurfacePoint point;
     point.position = Vec3(scene.space().point(position));
-    point.normal = point.shading_normal = normal;
+    point.normal = point.shading_normal = point.wo = normal;
     return point;
 }
 

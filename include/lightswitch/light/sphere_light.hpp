@@ -33,16 +33,20 @@ struct SphereLight {
         const float one_minus_cosine = cone(distance2);
         const float distance = std::sqrt(distance2);
         const Vec3 local = uniform_cone(u, one_minus_cosine);
-        const Vec3 wi = Basis(to_center / distance).to_world(local);
-        // The near intersection of the direction with the sphere, from the angle alone: stable for any distance.
+        const Basis basis(to_center / distance);
+        const Vec3 wi = basis.to_world(local);
+        // The near intersection of the direction with the sphere, from the angle alone and relative to the centre: no digits
+        // cancel, however small and far the sphere is.
         const float sine2 = square(local.x) + square(local.y);
-        const float reach = distance * local.z - safe_sqrt(square(radius) - distance2 * sine2);
-        const Vec3 normal = normalize(from.position + reach * wi - center);
+        const float half_chord = safe_sqrt(square(radius) - distance2 * sine2);
+        const float reach = distance * local.z - half_chord;
+        const Vec3 normal = normalize(
+            basis.to_world({reach * local.x, reach * local.y, -(distance * sine2 + local.z * half_chord)}));
         return {.wi = wi,
                 .radiance = emission,
                 .pdf = uniform_cone_pdf(one_minus_cosine),
                 .dirac = false,
-                .visibility = from.segment_to(center + (radius + offset) * normal)};
+                .visibility = from.segment_to(center + radius * normal, normal, offset)};
     }
 
     [[gnu::always_inline]] SolidAnglePdf pdf(const Vec3& from, const Vec3& wi, const SurfacePoint& hit) const {
@@ -71,7 +75,7 @@ private:
                 .radiance = emission,
                 .pdf = to_solid_angle(area_pdf(), distance2, cosine),
                 .dirac = false,
-                .visibility = from.segment_to(center + (radius - offset) * outward)};
+                .visibility = from.segment_to(center + radius * outward, outward, offset)};
     }
 };
 

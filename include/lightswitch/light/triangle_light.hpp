@@ -33,7 +33,7 @@ struct TriangleLight {
                 .radiance = emission,
                 .pdf = to_solid_angle(density, distance2, cosine),
                 .dirac = false,
-                .visibility = from.segment_to(position + offset * normal)};
+                .visibility = from.segment_to(position, normal, offset)};
     }
 
     [[gnu::always_inline]] SolidAnglePdf pdf(const Vec3& from, const Vec3& wi, const SurfacePoint& hit) const {

@@ -12,6 +12,7 @@
 #include <lightswitch/scene/scene.hpp>
 
 #include <chrono>
+#include <numeric>
 
 namespace lightswitch {
 
@@ -122,21 +123,28 @@ private:
         data_.emitters.push_back({.kind = Emitter::Kind::environment, .strength = source.radiance});
     }
 
+    /// Numbers the lights and decides how often each is chosen: half by power, half evenly among the emitters, because a dim light
+    /// may be the one that matters where it is near. Within an emitter its lights are chosen by power.
     void finish_lights() {
         std::vector<double> powers;
         (append_powers(std::get<std::vector<L>>(data_.lights), powers), ...);
         data_.statistics.lights = powers.size();
-        double total = 0;
-        for (const double power : powers) total += power;
-        if (total > 0) data_.light_choice = DiscreteDistribution(powers);
-        // Light numbers are known only now that all lights are.
+        const double total = std::accumulate(powers.begin(), powers.end(), 0.0);
+        if (!(total > 0)) return;
         const std::size_t counts[] = {std::get<std::vector<L>>(data_.lights).size()..., 0};
+        std::vector<double> weights(powers.size());
         for (std::size_t i = 0; i < pending_.size(); ++i) {
             std::size_t first = pending_[i].light.position();
             for (std::size_t kind = 0; kind < pending_[i].light.kind(); ++kind) first += counts[kind];
-            data_.emitters[i].first_light = first;
-            data_.emitters[i].light_count = pending_[i].count;
+            Emitter& emitter = data_.emitters[i];
+            emitter.first_light = first;
+            emitter.light_count = pending_[i].count;
+            const auto begin = powers.begin() + std::ptrdiff_t(first);
+            const double power = std::accumulate(begin, begin + std::ptrdiff_t(emitter.light_count), 0.0);
+            for (std::size_t light = first; light < first + emitter.light_count; ++light)
+                if (power > 0) weights[light] = powers[light] * (1 / total + 1 / (power * double(pending_.size())));
         }
+        data_.light_choice = DiscreteDistribution(weights);
     }
     template <class OneLight>
     static void append_powers(const std::vector<OneLight>& lights, std::vector<double>& powers) {

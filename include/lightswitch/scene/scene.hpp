@@ -152,7 +152,7 @@ public:
         return sum;
     }
 
-    /// A direction towards a light that `choice` in [0, 1) selects by power and on which `u` selects a place; the density
+    /// A direction towards a light that `choice` in [0, 1) selects (half by power, half evenly among the emitters) and on which `u` selects a place; the density
     /// includes the selection. Black when there is no light.
     [[gnu::always_inline]] LightSample sample_light(const SurfacePoint& from, float choice, const Vec2& u) const {
         if (data_.light_choice.empty()) return {};

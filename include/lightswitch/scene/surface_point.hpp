@@ -41,6 +41,16 @@ struct SurfacePoint {
         const Vec3 origin = position_towards(target - position);
         return {.origin = origin, .direction = target - origin, .near = 0, .far = 1};
     }
+
+    /// The same to the point `target` of another surface with that normal (on either side) and offset: it ends off that surface, on
+    /// the side that it comes from.
+    [[gnu::always_inline]] Ray segment_to(const Vec3& target, const Vec3& target_normal, float target_offset) const {
+        const Vec3 to_target = target - position;
+        // Seen from here, the other surface is also uncertain by the rounding of the ray and of Embree's test, which grow with
+        // the distance, however small that surface's own coordinates are.
+        const float clearance = target_offset + gamma_bound(10) * std::sqrt(length_squared(to_target));
+        return segment_to(target - std::copysign(clearance, dot(to_target, target_normal)) * target_normal);
+    }
 };
 
 }  // namespace lightswitch
