@@ -53,7 +53,7 @@ std::string lights_text(const SceneSummary& summary, const SceneStatistics& stat
     add(summary.point_lights, "point light", "point lights");
     add(summary.directional_lights, "directional light", "directional lights");
     if (kinds.empty()) return "none: only the method silhouette shows anything";
-    return fmt::format("{} ({} in all, each luminous triangle counted)", fmt::join(kinds, ", "), statistics.lights);
+    return fmt::format("{}; {} to sample, a mesh being one per triangle", fmt::join(kinds, ", "), statistics.lights);
 }
 
 }  // namespace

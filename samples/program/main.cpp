@@ -46,6 +46,16 @@ void add_values(CLI::App& app, const std::string& name, const std::string& type,
         ->allow_extra_args(false);
 }
 
+void add_outputs(CLI::App& app, std::vector<std::filesystem::path>& outputs, const std::string& help) {
+    add_values(
+        app, "-o,--output", "FILE",
+        [&](const std::string& text) {
+            if (text.empty()) throw Error("--output: the file has no name");
+            outputs.emplace_back(text);
+        },
+        help);
+}
+
 Size parse_size(std::string_view text) {
     const std::size_t x = text.find('x');
     long long width = 0, height = 0;
@@ -91,6 +101,22 @@ float parse_float(std::string_view option, std::string_view text, double least, 
     return value;
 }
 
+/// CLI11's help, with a usage line that shows what must be given.
+class Help : public CLI::Formatter {
+public:
+    std::string make_usage(const CLI::App* app, std::string) const override {
+        const std::string command = app->get_name();
+        if (command == "render") return usage("render SCENE --output FILE [OPTIONS]");
+        if (command == "compare") return usage("compare A B [OPTIONS]");
+        if (command == "info") return usage("info SCENE [OPTIONS]");
+        if (command == "methods") return usage("methods");
+        return usage("COMMAND [OPTIONS]");
+    }
+
+private:
+    static std::string usage(const char* arguments) { return fmt::format("Usage: lightswitch {}\n", arguments); }
+};
+
 void add_scene_options(CLI::App& app, SceneOptions& options) {
     app.add_option("SCENE", options.scene,
                    "a Mitsuba 3 scene file (ends in .xml), or one of\n" + list(stock::names))
@@ -118,10 +144,11 @@ void add_scene_options(CLI::App& app, SceneOptions& options) {
 
 void add_render(CLI::App& app, RenderOptions& options) {
     add_scene_options(app, options.scene);
-    app.add_option("-m,--method", options.method, "rendering method: " + list(known_methods) + "\n(default: path-nee; see \"lightswitch methods\")")
+    app.add_option("-m,--method", options.method, "rendering method: " + list(known_methods) +
+                       "\n(default: path-nee; see \"lightswitch methods\")")
         ->type_name("NAME");
-    add_values(
-        app, "-o,--output", "FILE", [&](const std::string& text) { options.outputs.emplace_back(text); },
+    add_outputs(
+        app, options.outputs,
         "image to write, by extension: .exr, .pfm, .hdr (linear) or .png\n(exposure, sRGB); may be repeated");
     add_value(
         app, "--spp", "N",
@@ -190,8 +217,8 @@ void add_render(CLI::App& app, RenderOptions& options) {
 void add_compare(CLI::App& app, CompareOptions& options) {
     app.add_option("A", options.a, "the image: .exr, .hdr or .pfm")->type_name("");
     app.add_option("B", options.b, "its reference, of the same size")->type_name("");
-    add_values(
-        app, "-o,--output", "FILE", [&](const std::string& text) { options.outputs.emplace_back(text); },
+    add_outputs(
+        app, options.outputs,
         ".png: A - B in false colours, red where A is brighter, with a\nlegend; .exr or .pfm: the difference itself; may be "
         "repeated");
     app.add_flag("--absolute", options.absolute, "write |A - B| instead");
@@ -212,19 +239,33 @@ void refuse_leftovers(const CLI::App& command) {
     const auto option = std::find_if(leftovers.begin(), leftovers.end(), [](const std::string& word) {
         return word.size() > 1 && word[0] == '-';
     });
-    const std::string help = "; see \"lightswitch " + command.get_name() + " --help\"";
+    const bool top = command.get_parent() == nullptr;
+    const std::string prefix = top ? "" : command.get_name() + ": ";
+    const std::string help = fmt::format("; see \"lightswitch {}--help\"", top ? "" : command.get_name() + " ");
     if (option == leftovers.end())
-        throw Error(fmt::format("{}: there is no use for \"{}\"{}", command.get_name(), leftovers[0], help));
+        throw Error(fmt::format("{}there is no use for \"{}\"{}", prefix, leftovers[0], help));
     std::vector<std::string> names;
     for (const CLI::Option* known : command.get_options())
         for (const std::string& name : known->get_lnames()) names.push_back("--" + name);
     const std::vector<std::string_view> views(names.begin(), names.end());
     const std::string word = option->substr(0, option->find('='));
-    throw Error(fmt::format("{}: there is no option \"{}\"{}{}", command.get_name(), word, suggestion(word, views), help));
+    throw Error(fmt::format("{}there is no option \"{}\"{}{}", prefix, word, suggestion(word, views), help));
+}
+
+/// What CLI11 found wrong, in a sentence.
+std::string explain(const CLI::ParseError& error) {
+    const std::string message = error.what();
+    const std::string subject = message.substr(0, message.find(':'));
+    if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr)
+        return subject + (message.find("At Most") != std::string::npos ? " is given more than once" : " needs a value");
+    return message;
 }
 
 int run_command(int argc, char** argv) {
     CLI::App app("Renders one scene with different light transport methods, and compares the results.", "lightswitch");
+    app.formatter(std::make_shared<Help>());
+    app.get_formatter()->column_width(28);
+    app.get_formatter()->label("SUBCOMMANDS", "Commands");
     app.set_version_flag("--version", "lightswitch " + version() + ", Embree " + RTC_VERSION_STRING);
     app.footer("Examples:\n"
                "  lightswitch render cornell-box --method path-nee --spp 64 --output box.png --output box.exr\n"
@@ -234,10 +275,10 @@ int run_command(int argc, char** argv) {
     RenderOptions render_options;
     CompareOptions compare_options;
     SceneOptions info_options;
-    CLI::App& render_command = *app.add_subcommand("render", "render a scene to image files");
-    CLI::App& compare_command = *app.add_subcommand("compare", "measure and show how two images differ");
-    CLI::App& methods_command = *app.add_subcommand("methods", "list the methods: kind, what each can and cannot do");
-    CLI::App& info_command = *app.add_subcommand("info", "tell what a scene requires");
+    CLI::App& render_command = *app.add_subcommand("render", "Render a scene to image files");
+    CLI::App& compare_command = *app.add_subcommand("compare", "Measure and show how two images differ");
+    CLI::App& methods_command = *app.add_subcommand("methods", "List the methods: kind, what each can and cannot do");
+    CLI::App& info_command = *app.add_subcommand("info", "Tell what a scene requires");
     add_render(render_command, render_options);
     add_compare(compare_command, compare_options);
     add_scene_options(info_command, info_options);
@@ -249,12 +290,14 @@ int run_command(int argc, char** argv) {
     if (!is_command && first[0] != '-')
         throw Error(fmt::format("there is no command \"{}\"{}; known are {}", first, suggestion(first, commands),
                                 list(commands)));
+    if (!is_command) app.allow_extras();
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
-        throw Error(error.what());
+        throw Error(explain(error));
     }
+    refuse_leftovers(app);
     if (app.get_subcommands().empty()) throw Error("name a command: " + list(commands) + "; see \"lightswitch --help\"");
     const CLI::App& command = *app.get_subcommands().front();
     refuse_leftovers(command);

@@ -57,9 +57,9 @@ LibraryDescription describe_sphere_in_white(const B& bsdf) {
 
 }  // namespace
 
-// Pixels are compared at 6.5 of their own standard errors. For normal means that is never, but means of 256 geometric numbers
-// are skewed, and more so when divided by their own spread: simulated, one in 2e5 is 5 standard errors off and one in 1e7
-// 6.5, which makes a false alarm of less than 0.01 for all 80 000 pixels of this file together.
+// Pixels are compared at 8 of their own standard errors. For normal means that is never, but means of 256 geometric numbers
+// are skewed, and more so when divided by their own spread: simulated for albedo 0.2, the worst, one in 15 000 is 5
+// standard errors off and one in 400 000 6.5. For the 80 000 pixels of this file together that makes about 0.01.
 // Whole images are compared at 4.5 of their standard errors: 7e-6 each, 3e-4 for all of them.
 
 TEST_CASE("a furnace is 1 / (1 - albedo) everywhere") {
@@ -69,11 +69,11 @@ TEST_CASE("a furnace is 1 / (1 - albedo) everywhere") {
         CAPTURE(albedo);
         // With roulette from the first bounce on the number of bounces is geometric, and its mean close to normal.
         const auto path = deviation(scene, PathTracer{.rr_depth = 0}, 256, expected);
-        CHECK(path.worst < 6.5);
+        CHECK(path.worst < 8);
         CHECK(std::abs(path.whole) < 4.5);
         CHECK(std::abs(path.bias) < 2e-3);
         const auto nee = deviation(scene, PathTracerNee{.rr_depth = 0}, 256, expected);
-        CHECK(nee.worst < 6.5);
+        CHECK(nee.worst < 8);
         CHECK(std::abs(nee.whole) < 4.5);
         CHECK(std::abs(nee.bias) < 2e-3);
         // The default depth of roulette, where single pixels are far from normal but whole images are not.
@@ -93,7 +93,7 @@ TEST_CASE("a furnace cut off at a depth is the partial sum of the geometric seri
             // No roulette up to five bounces: nothing is random for the path tracer.
             CHECK(std::abs(deviation(scene, PathTracer{.max_depth = depth}, 2, expected).bias) < 1e-6);
             const auto nee = deviation(scene, PathTracerNee{.max_depth = depth}, 64, expected);
-            CHECK(nee.worst < 6.5);
+            CHECK(nee.worst < 8);
             CHECK(std::abs(nee.whole) < 4.5);
             if (depth == 1) CHECK(std::abs(nee.bias) < 1e-7);
         }
@@ -107,10 +107,10 @@ TEST_CASE("a luminous sphere seen from inside is a furnace too") {
     description.film.width = description.film.height = 32;
     const FullScene scene = build(description);
     const auto path = deviation(scene, PathTracer{.rr_depth = 0}, 512, 2.5);
-    CHECK(path.worst < 6.5);
+    CHECK(path.worst < 8);
     CHECK(std::abs(path.whole) < 4.5);
     const auto nee = deviation(scene, PathTracerNee{.rr_depth = 0}, 512, 2.5);
-    CHECK(nee.worst < 6.5);
+    CHECK(nee.worst < 8);
     CHECK(std::abs(nee.whole) < 4.5);
     CHECK(std::abs(deviation(scene, PathTracerNee{.max_depth = 2}, 256, 1.6).whole) < 4.5);
 }
@@ -119,9 +119,9 @@ TEST_CASE("white things vanish in a white environment") {
     const auto test = [](const auto& bsdf) {
         const FullScene scene = build(describe_sphere_in_white(bsdf));
         const auto path = deviation(scene, PathTracer{}, 64, 1);
-        CHECK(path.worst < 6.5);
+        CHECK(path.worst < 8);
         const auto nee = deviation(scene, PathTracerNee{}, 256, 1);
-        CHECK(nee.worst < 6.5);
+        CHECK(nee.worst < 8);
         CHECK(std::abs(nee.whole) < 4.5);
     };
     test(Lambert{Rgb(1)});

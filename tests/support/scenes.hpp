@@ -26,7 +26,7 @@ inline GreyDescription grey_description() {
 }
 
 inline GreyScene build_grey(const GreyDescription& description) {
-    return build_scene<Bsdfs<Lambert>, AllLights>(description, {.embree_config = "threads=1", .robust = false});
+    return build_scene<Bsdfs<Lambert>, AllLights>(description, {.embree_config = "threads=1"});
 }
 
 /// A triangle of `size` at `center` with a random orientation and shape.
@@ -36,10 +36,13 @@ inline Mesh random_triangle(Random& random, const DVec3& center, double size) {
     return {.positions = {a, b, c}, .normals = {}, .triangles = {{0, 1, 2}}};
 }
 
-/// Two tiny triangles that stretch a scene to the box from -1 to 1, so that render space is scene space.
+/// Two tiny triangles that stretch a scene to the box from -1 to 1, or nearly so: then render space is scene space.
 inline void stretch_to_unit_box(GreyDescription& scene) {
-    for (const double s : {-1.0, 1.0})
-        scene.add(Mesh{.positions = {DVec3(s), {s, s, s * 0.999}, {s, s * 0.999, s}}, .normals = {}, .triangles = {{0, 1, 2}}}, 0);
+    for (const double s : {-0.9999, 0.9999})
+        scene.add(
+            Mesh{
+                .positions = {DVec3(s), {s, s, s * 0.999}, {s, s * 0.999, s}}, .normals = {}, .triangles = {{0, 1, 2}}},
+            0);
 }
 
 /// A point in free space, as if on a surface with that normal (scene units).

@@ -119,8 +119,7 @@ public:
             if (stopped()) return;
             const int x0 = static_cast<int>(unit) % columns * tile, y0 = static_cast<int>(unit) / columns * tile;
             const detail::UnitScope scope(reports[unit]);
-            for (int y = y0; y < std::min(y0 + tile, height()); ++y)
-                for (int x = x0; x < std::min(x0 + tile, width()); ++x) sample_pixel(x, y, fn, reports[unit]);
+            sample_tile(x0, y0, fn, reports[unit]);
         });
         gather(reports);
     }
@@ -139,10 +138,7 @@ public:
                 const detail::UnitScope scope(reports[unit]);
                 Splatter splatter(splats[unit], reports[unit], film_, iteration_, seed_);
                 const std::uint64_t begin = (first + unit) * paths_per_unit;
-                for (std::uint64_t i = begin; i < std::min(begin + paths_per_unit, n); ++i) {
-                    Sampler sampler(points_, path_stream, i);
-                    fn(i, sampler, splatter);
-                }
+                trace_paths(begin, std::min(begin + paths_per_unit, n), fn, splatter);
             });
             for (const auto& unit : splats) {
                 film_.add(unit);
@@ -156,6 +152,18 @@ private:
     static constexpr int tile = 16;
     static constexpr std::uint64_t paths_per_unit = 1024, units_per_wave = 256;
     static constexpr std::uint32_t pixel_stream = 0, path_stream = 1;
+
+    // The two inner loops stand alone, so that their machine code can be found and checked (tests/structure/hot_path).
+    [[gnu::noinline]] void sample_tile(int x0, int y0, const auto& fn, detail::UnitReport& report) {
+        for (int y = y0; y < std::min(y0 + tile, height()); ++y)
+            for (int x = x0; x < std::min(x0 + tile, width()); ++x) sample_pixel(x, y, fn, report);
+    }
+    [[gnu::noinline]] void trace_paths(std::uint64_t begin, std::uint64_t end, const auto& fn, Splatter& splatter) {
+        for (std::uint64_t i = begin; i < end; ++i) {
+            Sampler sampler(points_, path_stream, i);
+            fn(i, sampler, splatter);
+        }
+    }
 
     void sample_pixel(int x, int y, const auto& fn, detail::UnitReport& report) {
         const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(width()) +

@@ -164,6 +164,7 @@ public:
 
     /// The density with which `sample_light` at the position `from` chooses the direction `wi` to `hit`, a point on a light.
     [[gnu::always_inline]] SolidAnglePdf light_pdf(const Vec3& from, const Vec3& wi, const SurfacePoint& hit) const {
+        if (data_.light_choice.empty()) return {};  // there are lights, but all are black
         const SolidAnglePdf pdf = with_light(hit.light, [&](const auto& light) __attribute__((always_inline)) {
             if constexpr (is_area<decltype(light)>)
                 return light.pdf(from, wi, hit);
@@ -176,6 +177,7 @@ public:
     /// The density with which `sample_light`, at a point whose `facing_normal()` is `normal`, chooses the direction `wi` through the
     /// environment.
     SolidAnglePdf environment_pdf(const Vec3& normal, const Vec3& wi) const {
+        if (data_.light_choice.empty()) return {};
         SolidAnglePdf sum;
         for_each_environment([&](std::size_t number, const auto& light) __attribute__((always_inline)) {
             sum.value += light.pdf(normal, wi).value * data_.light_choice.probability(number);
