@@ -2,26 +2,19 @@
 //
 //   ray_rate [SCENE.xml ...]     without arguments: the stock Cornell box
 //
-// One thread; render and replay alternate, and the ratio is taken pair by pair.
+// One thread; replay and render alternate; in brackets the middle half of the pairs' ratios.
 
 #include <lightswitch/lightswitch.hpp>
 #include <lightswitch/load/mitsuba.hpp>
 
-#include <algorithm>
 #include <cstdio>
-#include <ctime>
 #include <vector>
+
+#include "paired.hpp"
 
 namespace {
 
 namespace ls = lightswitch;
-
-/// Processor time of this thread: other work on the machine does not count.
-double now() {
-    timespec t;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
-}
 
 struct RecordedRay {
     ls::Ray ray;
@@ -53,10 +46,9 @@ struct Recorder {
 };
 
 template <class S>
-double replay(const S& scene, const std::vector<RecordedRay>& rays, std::uint64_t& hits) {
+void replay(const S& scene, const std::vector<RecordedRay>& rays, std::uint64_t& hits) {
     const RTCScene handle = scene.accelerator().handle();
     const ls::FlushDenormals flush;
-    const double begin = now();
     for (const RecordedRay& r : rays) {
         RTCRayHit query;
         query.ray.org_x = r.ray.origin.x, query.ray.org_y = r.ray.origin.y, query.ray.org_z = r.ray.origin.z;
@@ -72,7 +64,6 @@ double replay(const S& scene, const std::vector<RecordedRay>& rays, std::uint64_
             hits += query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
         }
     }
-    return now() - begin;
 }
 
 template <class S>
@@ -84,36 +75,30 @@ void measure(const S& scene, int pairs) {
         ls::Session<Recorder<S>, ls::PathTracerNee, ls::SerialExecutor> session(recorder, method, settings, {});
         session.run({.samples = 4});
     }
-    std::vector<double> ratios, render_rate, sample_rate;
     std::uint64_t hits = 0;
-    const double rays = double(recorder.rays.size());
-    for (int i = 0; i <= pairs; ++i) {
-        ls::Session<S, ls::PathTracerNee, ls::SerialExecutor> session(scene, method, settings, {});
-        const double begin = now();
-        session.run({.samples = 4});
-        const double seconds = now() - begin;
-        const double bare = replay(scene, recorder.rays, hits);
-        if (i == 0) continue;  // warm-up
-        ratios.push_back(bare / seconds);
-        render_rate.push_back(rays / seconds * 1e-6);
-        sample_rate.push_back(4e-6 * double(session.film().area()) / seconds);
-    }
-    const auto median = [](std::vector<double>& v) {
-        std::sort(v.begin(), v.end());
-        return v[v.size() / 2];
-    };
-    const double rate = median(render_rate), ratio = median(ratios);
-    std::printf("%-16s %9.2f %9.3f %8.3f  (%.3f to %.3f)  %s\n", scene.name().c_str(), rate,
-                median(sample_rate), ratio, ratios.front(), ratios.back(), hits ? "" : "no hits?");
+    const auto result = bench::compare(
+        pairs,
+        [&] { replay(scene, recorder.rays, hits); },
+        [&] {
+            ls::Session<S, ls::PathTracerNee, ls::SerialExecutor> session(scene, method, settings, {});
+            session.run({.samples = 4});
+        });
+    const double samples = 4e-6 * scene.camera().width() * scene.camera().height();
+    std::printf("%-16s %9.2f %9.3f %8.3f  (%.3f to %.3f)%s\n", scene.name().c_str(),
+                double(recorder.rays.size()) * 1e-6 / result.b.median, samples / result.b.median, result.ratio.median,
+                result.ratio.low, result.ratio.high, hits ? "" : "  nothing was hit");
 }
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
     std::printf("%-16s %9s %9s %8s\n", "scene", "Mrays/s", "Msamp/s", "ratio");
     if (argc == 1) measure(ls::stock::cornell_box(), 15);
     for (int i = 1; i < argc; ++i) {
         const ls::AnyScene scene = ls::build_any(ls::load_mitsuba(argv[i]));
         std::visit([](const auto& s) { measure(s, 15); }, scene);
     }
+} catch (const ls::Error& error) {
+    std::fprintf(stderr, "ray_rate: %s\n", error.what());
+    return 2;
 }

@@ -90,6 +90,34 @@ struct TileEstimates {
     int columns = 0, rows = 0, side = 0;
     std::vector<Estimate> tiles;
     Estimate whole[3];
+
+    /// No tile's variance below that of `other` times `factor`. Where light is found rarely, a few replicas often all miss it, and
+    /// then seem more certain than they are; a longer render of the same kind knows better. With the ratio of the numbers of
+    /// samples as `factor`, this only removes such false alarms.
+    TileEstimates& at_least(const TileEstimates& other, double factor) {
+        for (std::size_t i = 0; i < tiles.size(); ++i)
+            if (tiles[i].variance < factor * other.tiles[i].variance) {
+                tiles[i].variance = factor * other.tiles[i].variance;
+                tiles[i].freedom = other.tiles[i].freedom;
+            }
+        return *this;
+    }
+
+    /// With `n` x `n` tiles joined into one. For tiles that err independently, as those of `load_tiles`.
+    TileEstimates joined(int n) const {
+        TileEstimates result{.columns = columns / n, .rows = rows / n, .side = side * n, .tiles = {}, .whole = {}};
+        std::copy(whole, whole + 3, result.whole);
+        result.tiles.resize(3 * static_cast<std::size_t>(result.columns * result.rows), Estimate{0, 0, tiles[0].freedom});
+        for (int y = 0; y < result.rows * n; ++y)
+            for (int x = 0; x < result.columns * n; ++x)
+                for (int c = 0; c < 3; ++c) {
+                    const Estimate& from = tiles[static_cast<std::size_t>(3 * (y * columns + x) + c)];
+                    Estimate& to = result.tiles[static_cast<std::size_t>(3 * (y / n * result.columns + x / n) + c)];
+                    to.mean += from.mean / (n * n);
+                    to.variance += from.variance / (double(n) * n * n * n);
+                }
+        return result;
+    }
 };
 
 /// Collects independent images of one scene. Tiles average over many pixels and samples, so that their values are close to normal.

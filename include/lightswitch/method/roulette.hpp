@@ -15,9 +15,10 @@ struct PathLength {
 /// inside a medium and falls again on leaving, and must not raise the survival (Walter's fix, as in Mitsuba 3).
 inline bool survives_roulette(Rgb& throughput, float eta, int bounces, int rr_depth, float u) {
     const float largest = max_component(throughput);
-    if (!(largest > 0)) return false;
+    if (largest == 0) return false;
     if (bounces <= rr_depth) return true;
-    const float probability = std::min(largest * eta * eta, 0.95f);
+    // In this order a NaN gives 0.95: such a path goes on until it is counted where its radiance arrives.
+    const float probability = std::min(0.95f, largest * eta * eta);
     if (u >= probability) return false;
     throughput /= probability;
     return true;

@@ -24,7 +24,7 @@ struct Budget {
 struct Progress {
     std::uint64_t iterations = 0;
     double seconds = 0;       ///< spent rendering
-    double fraction = 0;      ///< of the budget that is spent, 0 to 1
+    double fraction = 0;      ///< of the budget that is spent, 0 to 1; never falls
     double seconds_left = 0;  ///< estimated
     const Film& film;
 };
@@ -93,15 +93,22 @@ public:
     }
 
     /// Makes iterations until the budget is spent or the stop token asks for an end. Seconds count from this call; samples and
-    /// error concern everything accumulated so far.
+    /// error concern everything accumulated so far. What a method or an observer throws comes out of here; the whole iterations
+    /// before it are kept.
     void run(Budget budget) {
         using Clock = std::chrono::steady_clock;
         if (budget.samples <= 0 && budget.seconds <= 0 && budget.error <= 0) budget.samples = 64;
         const auto begin = Clock::now();
         const std::uint64_t already = film_.iterations();
+        double fraction = 0;
         while (!settings_.stop.stop_requested() && !(budget.samples > 0 && film_.iterations() >= wanted(budget))) {
             auto current = frame();
-            image_method().iterate(current, *state_);
+            try {
+                image_method().iterate(current, *state_);
+            } catch (...) {
+                film_.discard(executor_);
+                throw;
+            }
             if (settings_.stop.stop_requested()) {
                 film_.discard(executor_);
                 break;
@@ -109,7 +116,7 @@ public:
             film_.commit(executor_);
             statistics_.iterations = film_.iterations();
             const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
-            const double fraction = spent(budget, seconds, already);
+            fraction = std::max(fraction, spent(budget, seconds, already));  // an estimated error may also grow
             if (settings_.observer) {
                 settings_.observer({.iterations = film_.iterations(),
                                     .seconds = seconds,

@@ -107,7 +107,10 @@ private:
     void add(const PointSource& source, const Origin& origin) {
         // Irradiance is intensity over distance squared, and distances are multiplied by the scale.
         const double scale2 = data_.space.scale() * data_.space.scale();
-        const PointLight light{Vec3(data_.space.point(source.position)), Rgb(DVec3(source.intensity) * scale2)};
+        const DVec3 position = data_.space.point(source.position), intensity = DVec3(source.intensity) * scale2;
+        if (!(glm::length(position) < 1e18)) fail(origin, "the light is too far away beside the size of the scene");
+        if (!(glm::length(intensity) < 1e30)) fail(origin, "the light's intensity is too high beside the size of the scene");
+        const PointLight light{Vec3(position), Rgb(intensity)};
         pending_.push_back({add_light(light, origin), 1});
         data_.emitters.push_back(
             {.kind = Emitter::Kind::point, .strength = light.intensity, .position = light.position});

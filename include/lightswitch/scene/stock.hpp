@@ -58,8 +58,8 @@ inline Mesh torus_knot(int along = 400, int around = 16, double tube = 0.16) {
     const auto vertex = [&](int i, int j) { return static_cast<std::uint32_t>(i % along * around + j % around); };
     for (int i = 0; i < along; ++i)
         for (int j = 0; j < around; ++j) {
-            mesh.triangles.push_back({vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1)});
-            mesh.triangles.push_back({vertex(i, j), vertex(i + 1, j + 1), vertex(i, j + 1)});
+            mesh.triangles.push_back({vertex(i, j), vertex(i + 1, j + 1), vertex(i + 1, j)});
+            mesh.triangles.push_back({vertex(i, j), vertex(i, j + 1), vertex(i + 1, j + 1)});
         }
     return mesh;
 }

@@ -1,0 +1,67 @@
+#include <lightswitch/scene/any_scene.hpp>
+
+#include <doctest/doctest.h>
+
+using namespace lightswitch;
+
+namespace {
+
+LibraryDescription with(const LibraryBsdf& bsdf) {
+    LibraryDescription scene;
+    scene.film.width = scene.film.height = 8;
+    scene.add(rectangle(), scene.add(bsdf));
+    return scene;
+}
+
+template <class T>
+bool becomes(const LibraryDescription& scene) {
+    const AnyScene built = build_any(scene, {.embree_config = "threads=1"});
+    const bool named = std::visit([](const auto& s) { return s.statistics().triangles == 2; }, built);
+    return named && std::holds_alternative<T>(built);
+}
+
+}  // namespace
+
+TEST_CASE("any scene: the smallest type that holds everything") {
+    CHECK(becomes<DiffuseScene>(with(Lambert{})));
+    CHECK(becomes<DiffuseScene>(with(TwoSided<Lambert>{})));
+    for (const LibraryBsdf& bsdf :
+         {LibraryBsdf(Conductor{}), LibraryBsdf(TwoSided<Conductor>{}), LibraryBsdf(RoughConductor{}),
+          LibraryBsdf(TwoSided<RoughConductor>{}), LibraryBsdf(Dielectric{})})
+        CHECK(becomes<FullScene>(with(bsdf)));
+
+    LibraryDescription scene = with(Lambert{});
+    scene.shapes[0].emission = Rgb(1);
+    CHECK(becomes<DiffuseScene>(scene));
+    scene.add(Source(EnvironmentSource{}));
+    CHECK(becomes<DiffuseSkyScene>(scene));
+    scene.add(Sphere{}, 0);
+    CHECK(becomes<DiffuseSkyScene>(scene));
+    scene.shapes.back().emission = Rgb(1);
+    CHECK(becomes<FullScene>(scene));
+
+    for (const Source& source : {Source(PointSource{{0, 0, 1}, Rgb(1)}), Source(DirectionalSource{})}) {
+        LibraryDescription lit = with(Lambert{});
+        lit.add(source);
+        CHECK(becomes<FullScene>(lit));
+    }
+    // A material that nothing uses still counts: it must have a place.
+    LibraryDescription unused = with(Lambert{});
+    unused.add(Dielectric{});
+    CHECK(becomes<FullScene>(unused));
+}
+
+TEST_CASE("any scene: names begin with the word that the program shows") {
+    LibraryDescription scene = with(Lambert{});
+    CHECK(scene_type_name(build_any(scene)).substr(0, 8) == "diffuse:");
+    scene.add(Source(EnvironmentSource{}));
+    CHECK(scene_type_name(build_any(scene)).substr(0, 12) == "diffuse-sky:");
+    scene.add(Source(PointSource{}));
+    CHECK(scene_type_name(build_any(scene)).substr(0, 5) == "full:");
+}
+
+TEST_CASE("any scene: errors of the description pass through") {
+    LibraryDescription scene = with(Lambert{Rgb(1.5f)});
+    scene.materials[0].origin = {"room.xml", 3, "<bsdf>"};
+    CHECK_THROWS_WITH_AS(build_any(scene), doctest::Contains("room.xml:3: <bsdf>: "), Error);
+}
