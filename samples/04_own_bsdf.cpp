@@ -36,10 +36,10 @@ private:
 };
 
 int main() try {
-    // Two spheres of nearly the same brightness in the middle, lit from behind the camera: Lambert's on the left.
+    // Two spheres, as bright as each other in the middle, lit from behind the camera: Lambert's on the left.
     ls::SceneDescription<std::variant<ls::Lambert, Dust>> moons;
     moons.name = "moons";
-    const auto plaster = moons.add(ls::Lambert{ls::Rgb(0.24f)}), dust = moons.add(Dust{ls::Rgb(0.96f)});
+    const auto plaster = moons.add(ls::Lambert{ls::Rgb(0.12f)}), dust = moons.add(Dust{ls::Rgb(0.96f)});
     const auto black = moons.add(ls::Lambert{ls::Rgb(0)});
     moons.add(ls::Sphere{{-1.1, 0, 0}}, plaster);
     moons.add(ls::Sphere{{1.1, 0, 0}}, dust);

@@ -19,7 +19,7 @@ namespace ls = lightswitch;
 
 namespace {
 
-constexpr int samples = 96, reference_samples = 384;
+constexpr int image_size = 160, samples = 128, reference_samples = 1024;
 constexpr float largest_difference = 0.5f;  // at the ends of the colour maps, the same for all
 
 struct Entry {
@@ -28,6 +28,11 @@ struct Entry {
     ls::Image image;
     ls::RenderStatistics statistics;
 };
+
+ls::LibraryDescription with_size(ls::LibraryDescription scene) {
+    scene.film.width = scene.film.height = image_size;
+    return scene;
+}
 
 template <class Scene, class Method>
 Entry render(const Scene& scene, const Method& method, int spp, std::uint64_t seed) {
@@ -83,8 +88,11 @@ void compare_methods(const Scene& scene, const std::filesystem::path& directory)
 
 int main(int argc, char** argv) try {
     const std::filesystem::path directory = argc > 1 ? argv[1] : ".";
-    compare_methods(ls::stock::cornell_box(), directory);
-    compare_methods(ls::stock::cornell_sculpture(), directory);
+    compare_methods(ls::build_scene<ls::DiffuseBsdfs, ls::Lights<ls::TriangleLight>>(
+                        with_size(ls::stock::describe_cornell_box())),
+                    directory);
+    compare_methods(ls::build_scene<ls::AllBsdfs, ls::AllLights>(with_size(ls::stock::describe_cornell_sculpture())),
+                    directory);
 } catch (const ls::Error& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

@@ -1,18 +1,33 @@
 #!/usr/bin/env bash
-# samples/run.sh [CMAKE_OPTION...]: builds the program `lightswitch` and the samples, and lists them; installs what is
-# missing first (Debian, Ubuntu). Environment: .ci/setup.sh.
+# samples/run.sh [CMAKE_OPTION...]: builds the program `lightswitch` and the samples, runs them, and says where their
+# pictures are; installs what is missing first (Debian, Ubuntu). Environment: .ci/setup.sh.
+#
+# The exit status is 0 only when everything was built and ran.
 set -u
 source "$(dirname "${BASH_SOURCE[0]}")/../.ci/setup.sh"
 
-# What is run once everything is built, in the directory of the built programs.
+# Runs everything in the directory of the built programs; the pictures go to pictures/ in it.
 run_samples() {
-  local program found=no
-  for program in ./lightswitch ./[0-9][0-9]_*; do
-    [ -f "$program" ] && [ -x "$program" ] || continue
-    echo "$PWD/${program#./}"
-    found=yes
-  done
-  [ $found = yes ] || echo "samples: there are none"
+  local status=0
+  mkdir -p pictures && cd pictures || return 1
+  run() {
+    echo "\$ $*"
+    "$@" || { echo "samples: $1 failed" >&2; status=1; }
+  }
+
+  run ../lightswitch methods
+  run ../lightswitch info cornell-sculpture
+  run ../lightswitch render cornell-spheres --spp 64 --seed 1 --output spheres.exr --output spheres.png
+  run ../lightswitch render cornell-spheres --spp 64 --method path --output spheres-path.exr --stats spheres-path.json
+  run ../lightswitch compare spheres.exr spheres-path.exr --output spheres-difference.png
+  run ../01_minimal
+  run ../02_switch phong
+  run ../03_own_method
+  run ../04_own_bsdf
+  run ../05_comparison .
+
+  echo "samples: the pictures are in $PWD"
+  return $status
 }
 
 configure_project "$@" && build_targets lightswitch_samples || exit 1
