@@ -12,8 +12,7 @@ namespace ls = lightswitch;
 int main(int argc, char** argv) try {
     const ls::AnyMethod method = ls::method_by_name(argc > 1 ? argv[1] : "phong");
     const auto scene = ls::stock::cornell_sculpture();
-    const ls::Image image =
-        std::visit([&](const auto& m) { return ls::render(scene, m, {.samples = 64}); }, method);
+    const ls::Image image = std::visit([&](const auto& m) { return ls::render(scene, m, {.samples = 64}); }, method);
 
     const std::string file = "sculpture-" + std::string(ls::method_name(method)) + ".png";
     ls::save(file, image);

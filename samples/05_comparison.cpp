@@ -1,8 +1,8 @@
 // Every method on one scene, and what sets each apart from the path tracer: 05_comparison [DIRECTORY]
 //
-// Writes to DIRECTORY (by default the current one), for each scene, SCENE-METHOD.png and .exr, SCENE-METHOD-difference.png
-// and SCENE-comparison.png, the methods side by side with their differences beneath. All methods get the same number of
-// samples per pixel.
+// Writes to DIRECTORY (by default the current one), for each scene, SCENE-METHOD.png and .exr, a picture of each
+// difference, and SCENE-comparison.png: the methods side by side, the differences beneath. All methods get the same
+// number of samples per pixel.
 
 #include <lightswitch/compare/difference.hpp>
 #include <lightswitch/compare/false_color.hpp>
@@ -19,7 +19,7 @@ namespace ls = lightswitch;
 
 namespace {
 
-constexpr int image_size = 160, samples = 128, reference_samples = 1024;
+constexpr int image_size = 144, samples = 128, reference_samples = 1024;
 constexpr float largest_difference = 0.5f;  // at the ends of the colour maps, the same for all
 
 struct Entry {
@@ -42,21 +42,20 @@ Entry render(const Scene& scene, const Method& method, int spp, std::uint64_t se
 }
 
 ls::Image difference_picture(const Entry& entry, const ls::Image& reference, bool legend) {
-    return ls::false_color(ls::difference(entry.image, reference), {.scale = largest_difference,
-                                                                    .legend = legend,
-                                                                    .caption = entry.name + " - reference"});
+    return ls::false_color(ls::difference(entry.image, reference),
+                           {.scale = largest_difference, .legend = legend, .caption = entry.name + " - reference"});
 }
 
 void print_table(const std::vector<Entry>& entries, const ls::Image& reference) {
-    std::printf("%-12s %-12s %6s %8s %9s %9s %11s\n", "method", "kind", "spp", "seconds", "Mrays/s", "relMSE", "mean ratio");
+    std::printf("%-12s %-12s %6s %8s %9s %9s %11s\n", "method", "kind", "spp", "seconds", "Mrays/s", "relMSE",
+                "mean ratio");
     for (const Entry& entry : entries) {
         const ls::RenderStatistics& s = entry.statistics;
         std::printf("%-12s %-12s %6d %8.2f %9.2f ", entry.name.c_str(), std::string(ls::name(entry.kind)).c_str(),
                     static_cast<int>(s.iterations), s.seconds, 1e-6 * double(s.counts.rays) / s.seconds);
         if (entry.kind == ls::Kind::heuristic)
             std::printf("%9s %11s\n", "-", "-");  // its image is no estimate of the reference
-        else
-            std::printf("%9.4f %11.4f\n", ls::relmse(entry.image, reference), ls::mean_ratio(entry.image, reference));
+        else std::printf("%9.4f %11.4f\n", ls::relmse(entry.image, reference), ls::mean_ratio(entry.image, reference));
     }
 }
 
@@ -88,9 +87,9 @@ void compare_methods(const Scene& scene, const std::filesystem::path& directory)
 
 int main(int argc, char** argv) try {
     const std::filesystem::path directory = argc > 1 ? argv[1] : ".";
-    compare_methods(ls::build_scene<ls::DiffuseBsdfs, ls::Lights<ls::TriangleLight>>(
-                        with_size(ls::stock::describe_cornell_box())),
-                    directory);
+    compare_methods(
+        ls::build_scene<ls::DiffuseBsdfs, ls::Lights<ls::TriangleLight>>(with_size(ls::stock::describe_cornell_box())),
+        directory);
     compare_methods(ls::build_scene<ls::AllBsdfs, ls::AllLights>(with_size(ls::stock::describe_cornell_sculpture())),
                     directory);
 } catch (const ls::Error& error) {

@@ -17,8 +17,8 @@ bool has_extension(const std::filesystem::path& path, std::string_view wanted) {
 }
 
 struct Extremes {
-    double largest = 0;         // of |a - b|, over finite channels
-    int x = 0, y = 0;           // where
+    double largest = 0;          // of |a - b|, over finite channels
+    int x = 0, y = 0;            // where
     std::size_t not_finite = 0;  // pixels
 };
 

@@ -37,7 +37,8 @@ std::string requests_text(const SceneSummary& summary) {
     std::vector<std::string> wishes;
     if (summary.samples) wishes.push_back(fmt::format("{} samples per pixel", *summary.samples));
     if (summary.max_depth)
-        wishes.push_back(*summary.max_depth < 0 ? "unlimited depth" : fmt::format("depth up to {}", *summary.max_depth));
+        wishes.push_back(*summary.max_depth < 0 ? "unlimited depth"
+                                                : fmt::format("depth up to {}", *summary.max_depth));
     if (summary.rr_depth) wishes.push_back(fmt::format("Russian roulette after {} bounces", *summary.rr_depth));
     return wishes.empty() ? "nothing: the program's defaults apply" : fmt::format("{}", fmt::join(wishes, ", "));
 }
@@ -74,8 +75,8 @@ int info(const SceneOptions& options) {
                                        count_text(statistics.triangles, "triangle", "triangles"),
                                        count_text(statistics.spheres, "sphere", "spheres")));
             if (statistics.degenerate_triangles > 0)
-                line("dropped", count_text(statistics.degenerate_triangles, "triangle without area",
-                                           "triangles without area"));
+                line("dropped",
+                     count_text(statistics.degenerate_triangles, "triangle without area", "triangles without area"));
             if (const auto box = bounds(loaded.scene))
                 line("extent", vector_text(box->lower) + " to " + vector_text(box->upper));
             std::vector<std::string> materials;

@@ -78,7 +78,9 @@ std::optional<Box> bounds(const AnyScene& any_scene) {
             RTCBounds box;
             rtcGetSceneBounds(scene.accelerator().handle(), &box);
             const RenderSpace& space = scene.space();
-            const auto corner = [&](float x, float y, float z) { return space.center() + DVec3(x, y, z) / space.scale(); };
+            const auto corner = [&](float x, float y, float z) {
+                return space.center() + DVec3(x, y, z) / space.scale();
+            };
             return Box{corner(box.lower_x, box.lower_y, box.lower_z), corner(box.upper_x, box.upper_y, box.upper_z)};
         },
         any_scene);

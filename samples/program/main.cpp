@@ -9,14 +9,14 @@
 #include <lightswitch/scene/stock.hpp>
 #include <lightswitch/version.hpp>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
+#include <fcntl.h>
+#include <unistd.h>
 #include <array>
 #include <cstdio>
-#include <fcntl.h>
 #include <new>
-#include <unistd.h>
 
 namespace lightswitch::program {
 namespace {
@@ -90,7 +90,8 @@ Sampling parse_sampling(std::string_view text) {
 int parse_max_depth(std::string_view text) {
     const auto depth = static_cast<int>(parse_integer_option("--max-depth", text, -1, std::numeric_limits<int>::max()));
     if (depth == 0)
-        throw Error("--max-depth: 0 would show nothing; 1 is emission seen directly, 2 adds direct light, -1 is unlimited");
+        throw Error(
+            "--max-depth: 0 would show nothing; 1 is emission seen directly, 2 adds direct light, -1 is unlimited");
     return depth;
 }
 
@@ -118,8 +119,7 @@ private:
 };
 
 void add_scene_options(CLI::App& app, SceneOptions& options) {
-    app.add_option("SCENE", options.scene,
-                   "a Mitsuba 3 scene file (ends in .xml), or one of\n" + list(stock::names))
+    app.add_option("SCENE", options.scene, "a Mitsuba 3 scene file (ends in .xml), or one of\n" + list(stock::names))
         ->type_name("");
     add_values(
         app, "-D,--define", "NAME=VALUE",
@@ -144,12 +144,11 @@ void add_scene_options(CLI::App& app, SceneOptions& options) {
 
 void add_render(CLI::App& app, RenderOptions& options) {
     add_scene_options(app, options.scene);
-    app.add_option("-m,--method", options.method, "rendering method: " + list(known_methods) +
-                       "\n(default: path-nee; see \"lightswitch methods\")")
+    app.add_option("-m,--method", options.method,
+                   "rendering method: " + list(known_methods) + "\n(default: path-nee; see \"lightswitch methods\")")
         ->type_name("NAME");
-    add_outputs(
-        app, options.outputs,
-        "image to write, by extension: .exr, .pfm, .hdr (linear) or .png\n(exposure, sRGB); may be repeated");
+    add_outputs(app, options.outputs,
+                "image to write, by extension: .exr, .pfm, .hdr (linear) or .png\n(exposure, sRGB); may be repeated");
     add_value(
         app, "--spp", "N",
         [&](const std::string& text) {
@@ -180,7 +179,8 @@ void add_render(CLI::App& app, RenderOptions& options) {
         "rendering threads; 0, the default, is one per processor.\nThe image is the same for any number");
     add_value(
         app, "--max-depth", "D", [&](const std::string& text) { options.max_depth = parse_max_depth(text); },
-        "path length: 1 is emission seen directly, 2 adds direct light,\n-1 is unlimited (default: the scene's, or -1)");
+        "path length: 1 is emission seen directly, 2 adds direct light,\n-1 is unlimited (default: the scene's, or "
+        "-1)");
     add_value(
         app, "--rr-depth", "D",
         [&](const std::string& text) {
@@ -200,45 +200,45 @@ void add_render(CLI::App& app, RenderOptions& options) {
     app.add_option("--stats", options.stats, "write the render's numbers as JSON; - is standard output")
         ->type_name("FILE.json");
     app.add_flag("-q,--quiet", options.quiet, "no progress and no summary");
-    app.footer("Of --spp, --seconds and --error the limit that is met first ends the render. Ctrl-C ends it too:\n"
-               "the image so far is written; a second Ctrl-C ends the program at once.\n\n"
-               "Exit status: 0 done, 2 an error of which one line on standard error tells, 130 cancelled.\n\n"
-               "Examples:\n"
-               "  lightswitch render cornell-box --output box.png\n"
-               "  lightswitch render room.xml --method path --spp 256 --output room.exr --output room.png\n"
-               "  lightswitch render room.xml --error 0.02 --seconds 60 --size 640x360 --output room.png\n"
-               "  lightswitch render cornell-box --spp 16 --stats - --quiet\n\n"
-               "Keys of --stats: method, kind, scene, scene_type, width, height, samples_per_pixel, seconds (rendering\n"
-               "only), rays, shadow_rays, rays_per_second, samples_per_second, threads, seed, sampler, max_depth,\n"
-               "rr_depth, mean, estimated_error, non_finite, first_non_finite, splats, paths, triangles, spheres, lights,\n"
-               "build_seconds, embree_bytes, scene_bytes, camera, embree_version, lightswitch_version, cancelled.");
+    app.footer(
+        "Of --spp, --seconds and --error the limit that is met first ends the render. Ctrl-C ends it too:\n"
+        "the image so far is written; a second Ctrl-C ends the program at once.\n\n"
+        "Exit status: 0 done, 2 an error of which one line on standard error tells, 130 cancelled.\n\n"
+        "Examples:\n"
+        "  lightswitch render cornell-box --output box.png\n"
+        "  lightswitch render room.xml --method path --spp 256 --output room.exr --output room.png\n"
+        "  lightswitch render room.xml --error 0.02 --seconds 60 --size 640x360 --output room.png\n"
+        "  lightswitch render cornell-box --spp 16 --stats - --quiet\n\n"
+        "Keys of --stats: method, kind, scene, scene_type, width, height, samples_per_pixel, seconds (rendering\n"
+        "only), rays, shadow_rays, rays_per_second, samples_per_second, threads, seed, sampler, max_depth,\n"
+        "rr_depth, mean, estimated_error, non_finite, first_non_finite, splats, paths, triangles, spheres, lights,\n"
+        "build_seconds, embree_bytes, scene_bytes, camera, embree_version, lightswitch_version, cancelled.");
 }
 
 void add_compare(CLI::App& app, CompareOptions& options) {
     app.add_option("A", options.a, "the image: .exr, .hdr or .pfm")->type_name("");
     app.add_option("B", options.b, "its reference, of the same size")->type_name("");
-    add_outputs(
-        app, options.outputs,
-        ".png: A - B in false colours, red where A is brighter, with a\nlegend; .exr or .pfm: the difference itself; may be "
-        "repeated");
+    add_outputs(app, options.outputs,
+                ".png: A - B in false colours, red where A is brighter, with a\nlegend; .exr or .pfm: the difference "
+                "itself; may be "
+                "repeated");
     app.add_flag("--absolute", options.absolute, "write |A - B| instead");
     add_value(
-        app, "--scale", "S",
-        [&](const std::string& text) { options.scale = parse_float("--scale", text, 0, true); },
+        app, "--scale", "S", [&](const std::string& text) { options.scale = parse_float("--scale", text, 0, true); },
         "difference at the ends of the colour map (default: the 99th\npercentile)");
-    app.footer("Prints the means, their ratio, MSE, RMSE, relMSE (squared error over squared reference + 0.01) and the\n"
-               "largest difference. Images of different scenes, cameras or sizes are refused.\n\n"
-               "Example:\n"
-               "  lightswitch compare bdpt.exr path.exr --output difference.png --scale 0.1");
+    app.footer(
+        "Prints the means, their ratio, MSE, RMSE, relMSE (squared error over squared reference + 0.01) and the\n"
+        "largest difference. Images of different scenes, cameras or sizes are refused.\n\n"
+        "Example:\n"
+        "  lightswitch compare bdpt.exr path.exr --output difference.png --scale 0.1");
 }
 
 /// What CLI11 could not place: an option that is not known, or one word too many.
 void refuse_leftovers(const CLI::App& command) {
     const std::vector<std::string> leftovers = command.remaining();
     if (leftovers.empty()) return;
-    const auto option = std::find_if(leftovers.begin(), leftovers.end(), [](const std::string& word) {
-        return word.size() > 1 && word[0] == '-';
-    });
+    const auto option = std::find_if(leftovers.begin(), leftovers.end(),
+                                     [](const std::string& word) { return word.size() > 1 && word[0] == '-'; });
     const bool top = command.get_parent() == nullptr;
     const std::string prefix = top ? "" : command.get_name() + ": ";
     const std::string help = fmt::format("; see \"lightswitch {}--help\"", top ? "" : command.get_name() + " ");
@@ -267,10 +267,11 @@ int run_command(int argc, char** argv) {
     app.get_formatter()->column_width(28);
     app.get_formatter()->label("SUBCOMMANDS", "Commands");
     app.set_version_flag("--version", "lightswitch " + version() + ", Embree " + RTC_VERSION_STRING);
-    app.footer("Examples:\n"
-               "  lightswitch render cornell-box --method path-nee --spp 64 --output box.png --output box.exr\n"
-               "  lightswitch compare box.exr reference.exr --output difference.png\n\n"
-               "\"lightswitch COMMAND --help\" explains the options of a command.");
+    app.footer(
+        "Examples:\n"
+        "  lightswitch render cornell-box --method path-nee --spp 64 --output box.png --output box.exr\n"
+        "  lightswitch compare box.exr reference.exr --output difference.png\n\n"
+        "\"lightswitch COMMAND --help\" explains the options of a command.");
 
     RenderOptions render_options;
     CompareOptions compare_options;
@@ -298,7 +299,8 @@ int run_command(int argc, char** argv) {
         throw Error(explain(error));
     }
     refuse_leftovers(app);
-    if (app.get_subcommands().empty()) throw Error("name a command: " + list(commands) + "; see \"lightswitch --help\"");
+    if (app.get_subcommands().empty())
+        throw Error("name a command: " + list(commands) + "; see \"lightswitch --help\"");
     const CLI::App& command = *app.get_subcommands().front();
     refuse_leftovers(command);
     if (&command == &methods_command) return list_methods();
@@ -317,8 +319,7 @@ int run_command(int argc, char** argv) {
 /// the wrong way round instead, so that using it fails.
 void occupy_standard_streams() {
     for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
-        if (fcntl(stream, F_GETFD) == -1 &&
-            open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY) != stream)
+        if (fcntl(stream, F_GETFD) == -1 && open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY) != stream)
             _exit(user_error);
 }
 

@@ -36,8 +36,8 @@ constexpr const MethodNotes& notes_on(std::string_view name) {
 
 /// The names of all methods.
 inline constexpr auto known_methods = []<std::size_t... I>(std::index_sequence<I...>) {
-    return std::array<std::string_view, sizeof...(I)>{
-        notes_on(std::variant_alternative_t<I, AnyMethod>::name).name...};
-}(std::make_index_sequence<std::variant_size_v<AnyMethod>>{});
+    return std::array<std::string_view, sizeof...(I)>{notes_on(std::variant_alternative_t<I, AnyMethod>::name).name...};
+}
+(std::make_index_sequence<std::variant_size_v<AnyMethod>>{});
 
 }  // namespace lightswitch::program

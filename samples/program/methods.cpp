@@ -8,12 +8,13 @@ namespace lightswitch::program {
 int list_methods() {
     for_each_method([](const auto& method) {
         const MethodNotes& notes = notes_on(method.name);
-        fmt::print("{:<12}{:<12}can:    {}\n{:<24}cannot: {}\n", method.name, lightswitch::name(method.kind), notes.can, "",
-                   notes.cannot);
+        fmt::print("{:<12}{:<12}can:    {}\n{:<24}cannot: {}\n", method.name, lightswitch::name(method.kind), notes.can,
+                   "", notes.cannot);
     });
-    fmt::print("\nunbiased:   the expected image is exact for any number of samples\n"
-               "consistent: the error vanishes as the work grows\n"
-               "heuristic:  a picture of the scene, not of its light transport; not to be compared with the others\n");
+    fmt::print(
+        "\nunbiased:   the expected image is exact for any number of samples\n"
+        "consistent: the error vanishes as the work grows\n"
+        "heuristic:  a picture of the scene, not of its light transport; not to be compared with the others\n");
     return success;
 }
 

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <unistd.h>
+#include <cstdio>
 
 namespace lightswitch::program {
 namespace {
@@ -34,8 +34,7 @@ void ProgressLine::update(const Progress& progress, std::uint64_t rays) {
     next_ = progress.seconds + 0.1;
     dirty_ = true;
     const double rate = progress.seconds > 0 ? double(rays) / progress.seconds : 0;
-    const std::string left =
-        progress.fraction > 0 ? ", " + duration(progress.seconds_left) + " left" : std::string();
+    const std::string left = progress.fraction > 0 ? ", " + duration(progress.seconds_left) + " left" : std::string();
     write(fmt::format("{}{:3.0f} %  {} samples per pixel  {}{}  {:.2f} Mrays/s", erase_line, 100 * progress.fraction,
                       progress.iterations, duration(progress.seconds), left, rate * 1e-6));
 }

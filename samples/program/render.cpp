@@ -46,12 +46,12 @@ void warn_about_clipping(const LoadedScene& loaded) {
         nearest = std::min(nearest, depth);
         farthest = std::max(farthest, depth);
     }
-    if (farthest <= 0)
-        print_warning("all surfaces lie behind the camera");
+    if (farthest <= 0) print_warning("all surfaces lie behind the camera");
     else if (nearest > camera.far_clip || farthest < camera.near_clip)
-        print_warning(fmt::format("the camera's near_clip {:.6g} and far_clip {:.6g} cut everything away: along its axis "
-                                  "the surfaces lie from {:.6g} to {:.6g}",
-                                  camera.near_clip, camera.far_clip, nearest, farthest));
+        print_warning(
+            fmt::format("the camera's near_clip {:.6g} and far_clip {:.6g} cut everything away: along its axis "
+                        "the surfaces lie from {:.6g} to {:.6g}",
+                        camera.near_clip, camera.far_clip, nearest, farthest));
 }
 
 void warn_about_scene(const LoadedScene& loaded, const AnyMethod& method, const RenderOptions& options) {
@@ -59,12 +59,17 @@ void warn_about_scene(const LoadedScene& loaded, const AnyMethod& method, const 
     const std::string_view name = method_name(method);
     const std::size_t dirac = summary.point_lights + summary.directional_lights;
     if (dirac > 0 && !notes_on(name).sees_dirac_lights)
-        print_warning(fmt::format("the method {} cannot see the scene's {} point and directional lights: what they light "
-                                  "stays dark; use {}",
-                                  name, dirac, PathTracerNee::name));
+        print_warning(
+            fmt::format("the method {} cannot see the scene's {} point and directional lights: what they light "
+                        "stays dark; use {}",
+                        name, dirac, PathTracerNee::name));
     const bool dark = std::visit([](const auto& scene) { return scene.statistics().lights == 0; }, loaded.scene);
     if (dark && name != Silhouette::name) print_warning("the scene has no light: the image will be black");
-    const bool has_depth = std::visit([](const auto& m) { return requires { m.max_depth; }; }, method);
+    const bool has_depth = std::visit(
+        [](const auto& m) {
+            return requires { m.max_depth; };
+        },
+        method);
     if (!has_depth && (options.max_depth || options.rr_depth))
         print_warning(fmt::format("the method {} has no path length: --max-depth and --rr-depth change nothing", name));
     warn_about_clipping(loaded);
@@ -74,10 +79,10 @@ void warn_about_values(const RenderCounts& counts, const Image& image) {
     if (counts.non_finite == 0 || counts.first_non_finite.empty()) return;
     const NonFinite& first = counts.first_non_finite.front();
     const auto width = static_cast<std::uint32_t>(image.width());
-    print_warning(fmt::format("{} contributions were not finite and count as black; the first in pixel ({}, {}), "
-                              "iteration {}; to meet it again: --seed {} --spp {}",
-                              counts.non_finite, first.pixel % width, first.pixel / width, first.iteration, first.seed,
-                              first.iteration + 1));
+    print_warning(fmt::format(
+        "{} contributions were not finite and count as black; the first in pixel ({}, {}), "
+        "iteration {}; to meet it again: --seed {} --spp {}",
+        counts.non_finite, first.pixel % width, first.pixel / width, first.iteration, first.seed, first.iteration + 1));
 }
 
 PathLength path_length(const RenderOptions& options, const SceneSummary& summary) {
@@ -94,9 +99,10 @@ Budget budget(const RenderOptions& options, const SceneSummary& summary) {
 
 std::string summary_line(const AnyMethod& method, const Rendered& rendered, const RenderOptions& options) {
     const RenderStatistics& statistics = rendered.statistics;
-    std::string text = fmt::format("{} ({}): {} samples per pixel in {:.3f} s, {:.2f} Mrays/s", method_name(method),
-                                   name(method_kind(method)), statistics.iterations, statistics.seconds,
-                                   statistics.seconds > 0 ? 1e-6 * double(statistics.counts.rays) / statistics.seconds : 0);
+    std::string text =
+        fmt::format("{} ({}): {} samples per pixel in {:.3f} s, {:.2f} Mrays/s", method_name(method),
+                    name(method_kind(method)), statistics.iterations, statistics.seconds,
+                    statistics.seconds > 0 ? 1e-6 * double(statistics.counts.rays) / statistics.seconds : 0);
     if (std::isfinite(rendered.estimated_error))
         text += fmt::format(", estimated error {:.2g} %", 100 * rendered.estimated_error);
     for (std::size_t i = 0; i < options.outputs.size(); ++i)
@@ -135,10 +141,8 @@ int render(const RenderOptions& options) {
     for (const auto& output : options.outputs) save(output, rendered.image, {.exposure = options.exposure});
     if (!options.stats.empty()) {
         const std::string json = statistics_json(loaded.scene, method, options, rendered);
-        if (options.stats == "-")
-            fmt::print("{}", json);
-        else
-            write_file_atomically(options.stats, json);
+        if (options.stats == "-") fmt::print("{}", json);
+        else write_file_atomically(options.stats, json);
     }
     // Whoever reads the statistics from standard output wants nothing else there.
     if (!options.quiet)

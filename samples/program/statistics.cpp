@@ -58,7 +58,10 @@ std::string statistics_json(const AnyScene& scene, const AnyMethod& method, cons
               {"paths", counts.paths}};
     std::visit(
         [&](const auto& m) {
-            if constexpr (requires { m.max_depth; m.rr_depth; }) {
+            if constexpr (requires {
+                              m.max_depth;
+                              m.rr_depth;
+                          }) {
                 json["max_depth"] = m.max_depth;
                 json["rr_depth"] = m.rr_depth;
             }

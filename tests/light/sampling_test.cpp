@@ -244,6 +244,8 @@ TEST_CASE("light sampling: point and directional lights") {
               doctest::Approx(5 * direction.z / (distance * distance)).epsilon(1e-3));
     }
     CHECK(irradiance(scene, free_point(scene, {0.2, 0.3, 0.8}), 10, 62).mean.value() == 0);
+    // In the light itself there is no direction to it.
+    CHECK(scene.sample_light(free_point(scene, {0.2, 0.3, 0.7}), 0.5f, {0.5f, 0.5f}).pdf.value == 0);
 
     description.sources.clear();
     description.add(Source(DirectionalSource{{3, 0, -4}, Rgb(3, 5, 7)}));

@@ -1,4 +1,5 @@
 #include <lightswitch/bsdf/conductor.hpp>
+#include <lightswitch/core/parallel.hpp>
 
 #include "../support/scenes.hpp"
 
@@ -233,6 +234,27 @@ TEST_CASE("build: shapes keep their own materials and lights, whatever order the
         CHECK(hit->facing_normal().z > 0);
     }
     CHECK(built.emitters().size() == 3);
+}
+
+TEST_CASE("build: the smallest triangles beside the largest have normals") {
+    for (const double half : {1e-6, 1e-9, 1e-10, 1e-12}) {
+        GreyDescription scene = grey_description();
+        stretch_to_unit_box(scene);
+        scene.add(rectangle(DMat4({half, 0, 0, 0}, {0, half, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1})), 0);
+        const GreyScene built = build_grey(scene);
+        const FlushDenormals as_in_a_render;
+        const auto hit = built.intersect(
+            Ray{.origin = Vec3(DVec3(0.2, 0.3, 1) * half), .direction = {0, 0, -1}, .near = 0, .far = 0.5f});
+        CAPTURE(half);
+        REQUIRE(hit);
+        CHECK(hit->normal == Vec3(0, 0, 1));
+    }
+    // The largest that render space can hold, across it.
+    GreyDescription scene = grey_description();
+    scene.add(Mesh{.positions = {{-1, -1, -1}, {1, 1, -1}, {-1, 1, 1}}, .normals = {}, .triangles = {{0, 1, 2}}}, 0);
+    const auto hit = build_grey(scene).intersect(Ray{.origin = {0, 0.3f, 0.9f}, .direction = {0, 0, -1}});
+    REQUIRE(hit);
+    CHECK(length_squared(hit->normal) == doctest::Approx(1));
 }
 
 TEST_CASE("build: vertices that no triangle uses do not matter, wherever they are") {

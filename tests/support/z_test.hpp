@@ -184,15 +184,14 @@ struct Comparison {
     double smallest = 1;  ///< p-value
     int tests = 0, worst_tile = -1, worst_channel = 0;
     double ours = 0, theirs = 0;  ///< where it is worst
-    /// Sum over tiles of the square of the standardised luminance difference, standardised itself: about normal. It sees small
-    /// differences that are everywhere; `smallest` sees large ones at one place.
-    double spread = 0;
+    /// Of all tiles together: sees small differences that are everywhere, where `smallest` sees large ones at one place.
+    ChiSquare together;
 
-    bool agree() const { return smallest > level && student_p(std::max(spread, 0.0), infinity) / 2 > level; }
+    bool agree() const { return smallest > level && together.p_value > level; }
 
     friend std::ostream& operator<<(std::ostream& out, const Comparison& c) {
         return out << "smallest p " << c.smallest << " of " << c.tests << " (level " << c.level << ") at tile " << c.worst_tile
-                   << " channel " << c.worst_channel << ": " << c.ours << " against " << c.theirs << "; spread " << c.spread;
+                   << " channel " << c.worst_channel << ": " << c.ours << " against " << c.theirs << "; together " << c.together;
     }
 };
 
@@ -204,7 +203,6 @@ inline Comparison compare(const TileEstimates& a, const TileEstimates& b, double
     if (a.columns != b.columns || a.rows != b.rows) throw std::logic_error("tiles of different images");
     result.tests = static_cast<int>(a.tiles.size()) + 4;
     result.level = sidak(false_alarm, result.tests * others);
-    double sum = 0, expected = 0, variance = 0;
     const auto test = [&](const Estimate& ours, const Estimate& theirs, int tile, int channel) {
         const double p = welch_p(ours, theirs);
         if (p < result.smallest) {
@@ -214,20 +212,18 @@ inline Comparison compare(const TileEstimates& a, const TileEstimates& b, double
             result.ours = ours.mean;
             result.theirs = theirs.mean;
         }
+        return p;
     };
     for (std::size_t i = 0; i < a.tiles.size(); ++i) {
-        test(a.tiles[i], b.tiles[i], static_cast<int>(i) / 3, static_cast<int>(i) % 3);
-        if (i % 3 != 1) continue;  // green stands for the luminance: channels differ little
-        const Estimate difference = a.tiles[i] - b.tiles[i];
-        if (!(difference.variance > 0) || !(difference.freedom > 8)) continue;
-        // The moments of the square of Student's t.
-        const double f = difference.freedom, mean = std::isinf(f) ? 1 : f / (f - 2);
-        sum += difference.mean * difference.mean / difference.variance;
-        expected += mean;
-        variance += std::isinf(f) ? 2 : 2 * mean * mean * (f - 1) / (f - 4);
+        const double p = test(a.tiles[i], b.tiles[i], static_cast<int>(i) / 3, static_cast<int>(i) % 3);
+        if (i % 3 != 1) continue;  // green stands for all: channels err together
+        // The normal number that is as improbable as this t: squares of those add up to chi-square.
+        const double z = student_quantile(std::max(p, 1e-300), infinity);
+        result.together.statistic += z * z;
+        ++result.together.degrees_of_freedom;
     }
     for (int c = 0; c < 3; ++c) test(a.whole[c], b.whole[c], -1, c);
-    if (variance > 0) result.spread = (sum - expected) / std::sqrt(variance);
+    result.together.p_value = gamma_q(0.5 * result.together.degrees_of_freedom, 0.5 * result.together.statistic);
     return result;
 }
 

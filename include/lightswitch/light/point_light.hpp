@@ -16,6 +16,7 @@ struct PointLight {
     [[gnu::always_inline]] LightSample sample(const SurfacePoint& from, const Vec2&) const {
         const Vec3 to_light = position - from.position;
         const float distance2 = length_squared(to_light);
+        if (!(distance2 > 0)) return {};
         return {.wi = to_light * (1 / std::sqrt(distance2)),
                 .radiance = intensity / distance2,
                 .pdf = {1},

@@ -218,7 +218,8 @@ private:
         const detail::MeshRecord& mesh = data_.meshes[hit.geometry];
         const Vec3 step = hit.distance * ray.direction;
         point.position = ray.origin + step;
-        point.normal = normalize(hit.normal);
+        // Twice the area long, at most 12: scaled so that its square neither overflows nor vanishes for the smallest triangles.
+        point.normal = normalize(hit.normal * 0x1p59f);
         point.shading_normal = point.normal;
         // Rounding of the sum above and of the distance, both across the surface, grows with what was added up.
         const Vec3 n = glm::abs(point.normal);

@@ -1,0 +1,92 @@
+// The sub-command compare.
+
+#include "program/process.hpp"
+
+#include <lightswitch/film/image_io.hpp>
+
+using namespace lightswitch::test;
+
+namespace {
+
+lightswitch::Image image(int width, int height, float value) {
+    lightswitch::Image result(width, height);
+    for (auto& pixel : result.pixels()) pixel = lightswitch::Rgb(value, 2 * value, 4 * value);
+    return result;
+}
+
+}  // namespace
+
+TEST_CASE("compare prints the metrics and writes the difference") {
+    const Workspace workspace;
+    lightswitch::Image a = image(20, 10, 1);
+    a(7, 3).y += 0.5f;
+    lightswitch::save(workspace / "a.pfm", a);
+    lightswitch::save(workspace / "b.pfm", image(20, 10, 1));
+    const Ended ended = run(workspace, {"compare", "a.pfm", "b.pfm", "-o", "d.png", "-o", "d.pfm"});
+    CHECK(ended.status == 0);
+    CHECK(ended.err == "");
+    CHECK(ended.prints("mean A      1 2.0025 4\n"));
+    CHECK(ended.prints("mean B      1 2 4\n"));
+    CHECK(ended.prints("mean ratio  1.000357\n"));     // 7.0025 / 7
+    CHECK(ended.prints("MSE         0.000416667\n"));  // 0.25 / 600
+    CHECK(ended.prints("RMSE        0.0204124\n"));
+    CHECK(ended.prints("relMSE      0.000103907\n"));  // 0.25 / 4.01 / 600
+    CHECK(ended.prints("max |A - B| 0.5 at pixel (7, 3)\n"));
+    CHECK(workspace.files() == std::set<std::string>{"a.pfm", "b.pfm", "d.pfm", "d.png"});
+    const lightswitch::Image difference = lightswitch::load_image(workspace / "d.pfm");
+    CHECK(difference(7, 3) == lightswitch::Rgb(0, 0.5f, 0));
+    CHECK(difference(8, 3) == lightswitch::Rgb(0));
+
+    CHECK(run(workspace, {"compare", "b.pfm", "a.pfm", "-o", "d.pfm"}).status == 0);
+    CHECK(lightswitch::load_image(workspace / "d.pfm")(7, 3).y == -0.5f);
+    CHECK(run(workspace, {"compare", "b.pfm", "a.pfm", "-o", "d.pfm", "-o", "d.hdr", "--absolute"}).status == 0);
+    CHECK(lightswitch::load_image(workspace / "d.pfm")(7, 3).y == 0.5f);
+    CHECK(lightswitch::load_image(workspace / "d.hdr")(7, 3).y == 0.5f);
+}
+
+TEST_CASE("compare counts values that are not finite") {
+    const Workspace workspace;
+    lightswitch::Image a = image(4, 4, 1);
+    a(1, 1).x = std::nanf("");
+    lightswitch::save(workspace / "a.pfm", a);
+    lightswitch::save(workspace / "b.pfm", image(4, 4, 1));
+    const Ended ended = run(workspace, {"compare", "a.pfm", "b.pfm"});
+    CHECK(ended.status == 0);
+    CHECK(ended.prints("not finite  1 pixel"));
+    CHECK(ended.prints("MSE         nan\n"));
+}
+
+TEST_CASE("compare refuses what cannot be compared, and writes nothing") {
+    const Workspace workspace;
+    lightswitch::save(workspace / "a.pfm", image(4, 4, 1));
+    lightswitch::save(workspace / "b.pfm", image(4, 5, 1));
+    lightswitch::save(workspace / "c.png", image(4, 4, 1));
+    workspace.write("d.pfm", "PF\n4 4\n-1\nshort");
+    std::vector<std::pair<std::vector<std::string>, std::string>> calls{
+        {{"compare"}, "name two images"},
+        {{"compare", "a.pfm"}, "name two images"},
+        {{"compare", "a.pfm", "b.pfm", "-o", "x.png"}, "images of different size cannot be compared: 4 x 4 and 4 x 5"},
+        {{"compare", "a.pfm", "none.pfm"}, "none.pfm: no such file"},
+        {{"compare", "a.pfm", "c.png"}, "PNG is not read"},
+        {{"compare", "a.pfm", "d.pfm"}, "d.pfm: "},
+        {{"compare", "a.pfm", "a.pfm", "-o", "x.hdr"}, "no negative values"},
+        {{"compare", "a.pfm", "a.pfm", "-o", "x.gif"}, "an image is one of"},
+        {{"compare", "a.pfm", "a.pfm", "--scale", "0"}, "not a finite number above 0"},
+        {{"compare", "a.pfm", "a.pfm", "a.pfm"}, "there is no use for \"a.pfm\""}};
+    if (lightswitch::detail::has_exr) {
+        for (const char* scene : {"furnace", "cornell-box"})
+            CHECK(run(workspace, {"render", scene, "--size", "4x4", "--spp", "1", "-o", scene + std::string(".exr")})
+                      .status == 0);
+        calls.push_back({{"compare", "furnace.exr", "cornell-box.exr", "-o", "x.png"}, "different scene"});
+    }
+    const auto before = workspace.files();
+    for (const auto& [arguments, message] : calls) {
+        const Ended ended = run(workspace, arguments);
+        CAPTURE(message);
+        CAPTURE(ended.out);
+        CAPTURE(ended.err);
+        CHECK(is_user_error(ended));
+        CHECK(ended.says(message));
+        CHECK(workspace.files() == before);
+    }
+}
