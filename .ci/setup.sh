@@ -9,6 +9,9 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=${LIGHTSWITCH_BUILD_DIR:-$root/build}
 jobs=${LIGHTSWITCH_JOBS:-$(nproc 2> /dev/null || getconf _NPROCESSORS_ONLN)}
 
+# A checkout elsewhere finds what this one has compiled.
+export CCACHE_BASEDIR=${CCACHE_BASEDIR:-$root} CCACHE_NOHASHDIR=${CCACHE_NOHASHDIR:-1}
+
 # configure_project [CMAKE_OPTION...]: installs what is missing and configures. Options stay in
 # the build directory until they are given another value.
 configure_project() {

@@ -150,15 +150,15 @@ Leaks torture(bool robust, int rays, std::uint32_t seed) {
 
 TEST_CASE("offset: rays leave convex meshes without touching them, and cross them without loss") {
     // With Embree's faster test the edges of triangles are uncertain by their rounding: of rays that leave at grazing angles
-    // (cosines log-uniform from 1e-6 to 1) some meet an edge that they should just miss, and of those that cross a body some
-    // leave through the crack between two triangles. Both were measured as less than 5 in a million.
+    // (cosines log-uniform from 1e-6 to 1) some meet an edge that they should just miss, 3 in a million as measured with
+    // other seeds. A ray may also slip through the crack between two triangles; none of 2 million did.
     const Leaks fast = torture(false, 12000, 1);
     CHECK(fast.outward > 400000);
     CHECK(fast.returned == 0);
     CHECK(fast.outward_grazing > 400000);
     CHECK(fast.returned_grazing < 20e-6 * double(fast.outward_grazing));
     CHECK(fast.inward > 400000);
-    CHECK(fast.escaped < 20e-6 * double(fast.inward));
+    CHECK(fast.escaped < 5e-6 * double(fast.inward));
 
     const Leaks robust = torture(true, 6000, 2);
     CHECK(robust.outward > 200000);
