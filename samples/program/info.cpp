@@ -74,6 +74,7 @@ int info(const SceneOptions& options) {
             line("shapes", fmt::format("{} of {}, {}", count_text(summary.meshes, "mesh", "meshes"),
                                        count_text(statistics.triangles, "triangle", "triangles"),
                                        count_text(statistics.spheres, "sphere", "spheres")));
+            if (statistics.robust) line("intersection", "watertight (asked for, or needed by needle-like triangles)");
             if (statistics.degenerate_triangles > 0)
                 line("dropped",
                      count_text(statistics.degenerate_triangles, "triangle without area", "triangles without area"));

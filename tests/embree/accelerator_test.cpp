@@ -39,10 +39,10 @@ Shapes random_shapes(std::size_t triangles, std::size_t spheres, Random& random)
 }
 
 Accelerator build(const Shapes& shapes, bool robust = false) {
-    Accelerator accelerator(one_thread, robust);
+    Accelerator accelerator(one_thread);
     if (!shapes.triangles.empty()) accelerator.add(shapes.positions, shapes.triangles);
     if (!shapes.spheres.empty()) accelerator.add(shapes.spheres);
-    accelerator.commit();
+    accelerator.commit(robust);
     return accelerator;
 }
 

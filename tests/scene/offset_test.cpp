@@ -167,6 +167,21 @@ TEST_CASE("offset: rays leave convex meshes without touching them, and cross the
     CHECK(robust.escaped == 0);
 }
 
+TEST_CASE("offset: a mesh of needles is traced with the watertight test") {
+    // Edges 1 : 1000. With the fast test several in a hundred of these rays meet the needle again.
+    const Mesh needle = spindle(16, 2, {0.001, 0.001, 0.95});
+    Torture test{false, 12000, Random(6)};
+    for (const double size : {1.0, 0.1}) test.run(&needle, size, DVec3(0), DVec3(0));
+    CHECK(test.leaks.outward > 20000);
+    CHECK(double(test.leaks.returned) <= 1e-4 * double(test.leaks.outward));
+
+    GreyDescription description = grey_description();
+    description.add(cube(), 0);
+    CHECK_FALSE(build_grey(description).statistics().robust);
+    description.add(needle, 0);
+    CHECK(build_grey(description).statistics().robust);
+}
+
 TEST_CASE("offset: rays leave spheres of all sizes without touching them, and cross them without loss") {
     Torture test{false, 20000, Random(3)};
     for (const double size : {0.95, 0.1, 1e-2, 1e-3, 1e-4})

@@ -98,10 +98,9 @@ public:
         float radius;
     };
 
-    /// `config` as for `Device`; `robust` asks Embree for watertight edges.
-    explicit Accelerator(const std::string& config = "", bool robust = false) : device_(config) {
+    /// `config` as for `Device`.
+    explicit Accelerator(const std::string& config = "") : device_(config) {
         scene_.reset(rtcNewScene(device_.get()));
-        if (robust) rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
         device_.check("making a scene");
     }
 
@@ -120,9 +119,10 @@ public:
         return attach(geometry);
     }
 
-    /// Builds the acceleration structure.
-    void commit() {
+    /// Builds the acceleration structure. `robust` asks Embree for its watertight intersection test.
+    void commit(bool robust = false) {
         const auto start = std::chrono::steady_clock::now();
+        if (robust) rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
         rtcCommitScene(scene_.get());
         device_.check("building the acceleration structure of " + std::to_string(geometries_) + " shapes");
         build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

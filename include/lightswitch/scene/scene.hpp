@@ -44,6 +44,7 @@ struct SceneStatistics {
     std::size_t triangles = 0, spheres = 0, lights = 0, degenerate_triangles = 0;
     std::int64_t embree_bytes = 0, scene_bytes = 0;
     double embree_build_seconds = 0, build_seconds = 0;
+    bool robust = false;  ///< whether Embree uses its watertight intersection test
 };
 
 namespace detail {
