@@ -11,8 +11,8 @@ namespace {
 
 using TinyScene = Scene<Bsdfs<Lambert>, Lights<ConstantEnvironment>>;
 
-/// Columns left of `edge` are black, the others see an environment of radiance 1. On a film of width 16 at distance 1 from the
-/// pinhole, 8 pixels are one unit, and +x is to the left.
+/// Columns left of `edge` are black, the others see an environment of radiance 1. On a film of width 16 at distance 1
+/// from the pinhole, 8 pixels are one unit, and +x is to the left.
 SceneDescription<Lambert> describe_step(double edge, const Filter& filter) {
     SceneDescription<Lambert> scene;
     const double x = 1 - edge / 8;
@@ -44,7 +44,9 @@ struct Coin {
     static constexpr Kind kind = Kind::heuristic;
     float probability = 0.25f;
     float head = 1;
-    Rgb radiance(const auto&, const Ray&, auto& sampler) const { return Rgb(sampler.next_1d() < probability ? head : 0); }
+    Rgb radiance(const auto&, const Ray&, auto& sampler) const {
+        return Rgb(sampler.next_1d() < probability ? head : 0);
+    }
 };
 
 /// Whatever the function does with a frame.
@@ -145,7 +147,8 @@ TEST_CASE("Sobol' points put the right share of every pixel's samples into an in
     const Coin coin;
     Session<TinyScene, Coin> session(scene, coin);
     session.run({.samples = 64});
-    // A quarter of the unit interval holds a quarter of 64 points of a (0,2)-sequence exactly, whatever the digital shift.
+    // A quarter of the unit interval holds a quarter of 64 points of a (0,2)-sequence exactly, whatever the digital
+    // shift.
     for (const Rgb& p : session.film().image().pixels()) CHECK(p.x == 0.25f);
     // The estimate from the spread knows nothing of that.
     CHECK(session.film().variance().mean().x == doctest::Approx(0.25 * 0.75 / 63).epsilon(1e-6));
@@ -192,9 +195,12 @@ TEST_CASE("splats off the film are ignored, and those that are not finite are co
         return std::pair(session.film().image(), session.statistics().counts);
     };
     const auto splat = [&](const Vec2& at, const Rgb& value) {
-        return run([=](auto& frame) { frame.paths(1, [=](std::uint64_t, auto&, auto& splatter) { splatter.splat(at, value); }); });
+        return run([=](auto& frame) {
+            frame.paths(1, [=](std::uint64_t, auto&, auto& splatter) { splatter.splat(at, value); });
+        });
     };
-    for (const Vec2 at : {Vec2(-1e-6f, 1), Vec2(1, -0.5f), Vec2(4, 1), Vec2(1, 3), Vec2(infinity, 0), Vec2(-1e30f, 1e30f)}) {
+    for (const Vec2 at :
+         {Vec2(-1e-6f, 1), Vec2(1, -0.5f), Vec2(4, 1), Vec2(1, 3), Vec2(infinity, 0), Vec2(-1e30f, 1e30f)}) {
         const auto [image, counts] = splat(at, Rgb(1));
         CHECK(image.mean() == DVec3(0));
         CHECK(counts.splats == 0);
@@ -214,7 +220,8 @@ TEST_CASE("splats off the film are ignored, and those that are not finite are co
 }
 
 TEST_CASE("every filter keeps a constant image constant") {
-    for (const Filter& filter : {Filter::box(), Filter::tent(), Filter::tent(2.5f), Filter::gaussian(), Filter::gaussian(1.5f)}) {
+    for (const Filter& filter :
+         {Filter::box(), Filter::tent(), Filter::tent(2.5f), Filter::gaussian(), Filter::gaussian(1.5f)}) {
         const TinyScene scene = build_scene<Bsdfs<Lambert>, Lights<ConstantEnvironment>>(describe_step(-1000, filter));
         for (const Rgb& p : render(scene, Sky{}, {.samples = 16}).pixels()) CHECK(p == Rgb(1));
     }
@@ -237,7 +244,8 @@ TEST_CASE("a step becomes the integral of the filter") {
     };
     const auto check = [&](const Filter& filter, const auto& cumulative) {
         for (const double edge : {8.0, 7.3, 5.81}) {
-            const TinyScene scene = build_scene<Bsdfs<Lambert>, Lights<ConstantEnvironment>>(describe_step(edge, filter));
+            const TinyScene scene =
+                build_scene<Bsdfs<Lambert>, Lights<ConstantEnvironment>>(describe_step(edge, filter));
             const Image image = render(scene, Sky{}, {.samples = 4096});
             for (int x = 0; x < 16; ++x) {
                 CAPTURE(filter.name());

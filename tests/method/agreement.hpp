@@ -10,8 +10,9 @@
 
 namespace lightswitch::test {
 
-/// Path tracing with and without next event estimation must agree on random scenes, for every limit of the path length, with a
-/// false alarm of at most `false_alarm` in all comparisons together. Tiles average over 64 pixels times all samples of a replica.
+/// Path tracing with and without next event estimation must agree on random scenes, for every limit of the path length,
+/// with a false alarm of at most `false_alarm` in all comparisons together. Tiles average over 64 pixels times all
+/// samples of a replica.
 inline void check_agreement(std::uint32_t first_scene, int scenes, int samples, double false_alarm) {
     constexpr int depths[] = {1, 2, 3, 4, 5, -1};
     const int comparisons = scenes * static_cast<int>(std::size(depths));
@@ -19,8 +20,10 @@ inline void check_agreement(std::uint32_t first_scene, int scenes, int samples, 
         const FullScene scene = build_scene<AllBsdfs, AllLights>(random_scene(seed));
         for (const int depth : depths) {
             // Roulette from the first bounce on in one of them: nothing is shared between the two but the scene.
-            const auto nee = replicate(scene, PathTracerNee{.max_depth = depth, .rr_depth = 1}, 8, 16, samples, Sampling::sobol, 1);
-            const auto path = replicate(scene, PathTracer{.max_depth = depth}, 8, 16, samples, Sampling::independent, 1001);
+            const auto nee =
+                replicate(scene, PathTracerNee{.max_depth = depth, .rr_depth = 1}, 8, 16, samples, Sampling::sobol, 1);
+            const auto path =
+                replicate(scene, PathTracer{.max_depth = depth}, 8, 16, samples, Sampling::independent, 1001);
             const Comparison comparison = compare(nee, path, false_alarm, comparisons);
             CHECK_MESSAGE(comparison.agree(), "scene ", seed, " depth ", depth, ": ", comparison);
         }

@@ -57,9 +57,9 @@ LibraryDescription describe_sphere_in_white(const B& bsdf) {
 
 }  // namespace
 
-// Pixels are compared at 8 of their own standard errors. For normal means that is never, but means of 256 geometric numbers
-// are skewed, and more so when divided by their own spread: simulated for albedo 0.2, the worst, one in 15 000 is 5
-// standard errors off and one in 400 000 6.5. For the 80 000 pixels of this file together that makes about 0.01.
+// Pixels are compared at 8 of their own standard errors. For normal means that is never, but means of 256 geometric
+// numbers are skewed, and more so when divided by their own spread: simulated for albedo 0.2, the worst, one in 15 000
+// is 5 standard errors off and one in 400 000 6.5. For the 80 000 pixels of this file together that makes about 0.01.
 // Whole images are compared at 4.5 of their standard errors: 7e-6 each, 3e-4 for all of them.
 
 TEST_CASE("a furnace is 1 / (1 - albedo) everywhere") {
@@ -85,6 +85,8 @@ TEST_CASE("a furnace is 1 / (1 - albedo) everywhere") {
 TEST_CASE("a furnace cut off at a depth is the partial sum of the geometric series") {
     for (const float albedo : {0.2f, 0.8f}) {
         const DiffuseScene scene = stock::furnace(albedo);
+        CHECK(render(scene, PathTracer{.max_depth = 0}, {.samples = 1}).mean() == DVec3(0));
+        CHECK(render(scene, PathTracerNee{.max_depth = 0}, {.samples = 1}).mean() == DVec3(0));
         double expected = 0;
         for (int depth = 1; depth <= 6; ++depth) {
             expected += std::pow(double(albedo), depth - 1);
@@ -135,7 +137,8 @@ TEST_CASE("rough metal returns no more than it receives, and polished metal near
     for (const float alpha : {0.01f, 0.1f, 0.5f, 1.0f}) {
         CAPTURE(alpha);
         const FullScene scene = build(describe_sphere_in_white(RoughConductor{.alpha = alpha}));
-        for (const Image& image : {render(scene, PathTracer{}, {.samples = 64}), render(scene, PathTracerNee{}, {.samples = 256})}) {
+        for (const Image& image :
+             {render(scene, PathTracer{}, {.samples = 64}), render(scene, PathTracerNee{}, {.samples = 256})}) {
             // Of the path tracer every single sample is at most 1; with light sampling 5 standard errors, as above.
             for (const Rgb& p : image.pixels()) CHECK(p.y < 1.2f);
             CHECK(image.mean().y < 1.0005);
@@ -151,7 +154,8 @@ namespace {
 /// A plane z = 0 of albedo 0.5 from above; the film of 8 x 8 pixels covers `side` x `side` around the origin.
 LibraryDescription describe_plane(double side, double scale = 1) {
     LibraryDescription scene;
-    scene.add(quad({-4 * scale, -4 * scale, 0}, {4 * scale, -4 * scale, 0}, {4 * scale, 4 * scale, 0}, {-4 * scale, 4 * scale, 0}),
+    scene.add(quad({-4 * scale, -4 * scale, 0}, {4 * scale, -4 * scale, 0}, {4 * scale, 4 * scale, 0},
+                   {-4 * scale, 4 * scale, 0}),
               scene.add(Lambert{Rgb(0.5f)}));
     scene.camera.to_world = CameraDescription::look_at({0, 0, 10 * scale}, {0, 0, 0}, {0, 1, 0});
     scene.camera.fov = glm::degrees(2 * std::atan(side / 20));
@@ -177,10 +181,13 @@ TEST_CASE("a point light falls off with the square of the distance and the cosin
         const Image image = render(build(description), PathTracerNee{}, {.samples = 1024});
         for (int y = 0; y < 8; ++y)
             for (int x = 0; x < 8; ++x) {
-                const double expected = pixel_mean(x, y, 4, [&](double px, double py) {
-                    const double d2 = (px - 0.7) * (px - 0.7) + (py + 0.4) * (py + 0.4) + 2.25;
-                    return 0.5 / std::numbers::pi * 1.5 / (d2 * std::sqrt(d2));
-                }) / (scale * scale);
+                const double expected = pixel_mean(x, y, 4,
+                                                   [&](double px, double py) {
+                                                       const double d2 =
+                                                           (px - 0.7) * (px - 0.7) + (py + 0.4) * (py + 0.4) + 2.25;
+                                                       return 0.5 / std::numbers::pi * 1.5 / (d2 * std::sqrt(d2));
+                                                   }) /
+                                        (scale * scale);
                 // Only the place within the pixel is random, and 1024 Sobol' points leave 1e-4 of that.
                 CHECK(image(x, y).x == doctest::Approx(2 * expected).epsilon(1e-3));
                 CHECK(image(x, y).y == doctest::Approx(3 * expected).epsilon(1e-3));

@@ -53,7 +53,8 @@ TEST_CASE("the silhouette of a rectangle covers the right part of each pixel") {
         for (int x = 0; x < 16; ++x) {
             const double across = std::clamp(std::min(x + 1.0, 11.5) - std::max(double(x), 3.25), 0.0, 1.0);
             const double down = std::clamp(std::min(y + 1.0, 9.75) - std::max(double(y), 2.5), 0.0, 1.0);
-            // Quarters of a pixel hold their share of 256 Sobol' points exactly, up to one that the rounding of the camera moves.
+            // Quarters of a pixel hold their share of 256 Sobol' points exactly, up to one that the rounding of the
+            // camera moves.
             CHECK(std::abs(double(image(x, y).y) - across * down) <= 1.0 / 256 + 1e-9);
             CHECK(image(x, y).x == doctest::Approx(0.25 * double(image(x, y).y)));
             CHECK(image(x, y).z == doctest::Approx(2 * double(image(x, y).y)));
@@ -115,7 +116,8 @@ TEST_CASE("on a diffuse plane Phong is exact for point and directional lights, a
 TEST_CASE("an environment lights a diffuse plane exactly") {
     LibraryDescription description = describe_plane();
     description.add(EnvironmentSource{Rgb(0.6f)});
-    for (const Rgb& p : render(build(description), no_ambient, {.samples = 1}).pixels()) CHECK(p.y == doctest::Approx(0.3));
+    for (const Rgb& p : render(build(description), no_ambient, {.samples = 1}).pixels())
+        CHECK(p.y == doctest::Approx(0.3));
 }
 
 TEST_CASE("on a diffuse plane Phong is nearly exact for small lamps") {
@@ -152,7 +154,8 @@ TEST_CASE("Phong's shadows are hard and where they belong") {
         description.add(source);
         const FullScene open = build(description);
         // A square of side 1 at height 1 throws the shadow. Seen from above it hides a part of the plane, black itself.
-        description.add(quad({-0.5, -0.5, 1}, {0.5, -0.5, 1}, {0.5, 0.5, 1}, {-0.5, 0.5, 1}), description.add(Lambert{Rgb(0)}));
+        description.add(quad({-0.5, -0.5, 1}, {0.5, -0.5, 1}, {0.5, 0.5, 1}, {-0.5, 0.5, 1}),
+                        description.add(Lambert{Rgb(0)}));
         const FullScene shadowed = build(description);
         const IterationPoints points(Sampling::sobol, 1, 0);
         int lit = 0, dark = 0;
@@ -166,13 +169,15 @@ TEST_CASE("Phong's shadows are hard and where they belong") {
                     ++dark;
                 } else {
                     ++lit;  // the full light or none
-                    CHECK(value == doctest::Approx(no_ambient.radiance(open, open.camera().ray(position, {}), sampler).y).epsilon(1e-4));
+                    CHECK(value ==
+                          doctest::Approx(no_ambient.radiance(open, open.camera().ray(position, {}), sampler).y)
+                              .epsilon(1e-4));
                 }
             }
         CHECK(double(lit) / (lit + dark) == doctest::Approx(lit_share).epsilon(5e-3));
     };
-    // The square hides (10/9)^2 of the 16 that are seen. Light from the side, 45 degrees: the shadow is a unit square shifted by 1 in x,
-    // of which the part from 0.5 to 5/9 is hidden too.
+    // The square hides (10/9)^2 of the 16 that are seen. Light from the side, 45 degrees: the shadow is a unit square
+    // shifted by 1 in x, of which the part from 0.5 to 5/9 is hidden too.
     check(DirectionalSource{{1, 0, -1}, Rgb(1)}, 1 - (100.0 / 81 + 1 - (5.0 / 9 - 0.5) * 1) / 16);
     // A point at height 2 above the corner (0.5, 0.5) doubles the square away from that corner: from -1.5 to 0.5.
     check(PointSource{{0.5, 0.5, 2}, Rgb(1)}, 1 - (4 + 100.0 / 81 - std::pow(5.0 / 9 + 0.5, 2)) / 16);
@@ -207,8 +212,11 @@ TEST_CASE("a highlight is where a mirror would show the light, and the picture i
         for (int x = 0; x < 8; ++x) {
             Sampler sampler(points, 0, 0);
             const auto value = [&](float column) {
-                return no_ambient.radiance(scene, scene.camera().ray({column, static_cast<float>(y) + 0.5f}, {}), sampler).y;
+                return no_ambient
+                    .radiance(scene, scene.camera().ray({column, static_cast<float>(y) + 0.5f}, {}), sampler)
+                    .y;
             };
-            CHECK(value(static_cast<float>(x) + 0.5f) == doctest::Approx(value(15.5f - static_cast<float>(x))).epsilon(1e-3));
+            CHECK(value(static_cast<float>(x) + 0.5f) ==
+                  doctest::Approx(value(15.5f - static_cast<float>(x))).epsilon(1e-3));
         }
 }

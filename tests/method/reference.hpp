@@ -30,18 +30,20 @@ inline auto veach_mis() { return reference(build_scene<AllBsdfs, AllLights>(desc
 struct Effort {
     int replicas = 16, samples = 8;  ///< samples of each replica
     Sampling sampling = Sampling::sobol;
-    double bias = 0.002;       ///< the 99 % interval of the relative bias of each channel must lie within this
+    double bias = 0.002;  ///< the 99 % interval of the relative bias of each channel must lie within this
     double false_alarm = 1e-3;
-    int join = 1;              ///< tiles that are joined to one, in each direction
+    int join = 1;  ///< tiles that are joined to one, in each direction
 };
 
-/// Replicas against the reference: Welch's test for each tile, and the bias of the whole image. The seeds are fixed: the bias test was
-/// seen to pass, and would for other seeds in more than nine of ten cases.
+/// Replicas against the reference: Welch's test for each tile, and the bias of the whole image. The seeds are fixed:
+/// the bias test was seen to pass, and would for other seeds in more than nine of ten cases.
 template <class SceneType, class M>
 void check_reference(const Reference<SceneType>& reference, const M& method, const Effort& effort) {
     const TileEstimates truth = reference.tiles.joined(effort.join);
-    TileEstimates ours = replicate(reference.scene, method, truth.side, effort.replicas, effort.samples, effort.sampling);
-    // The reference comes from path tracing with next event estimation too, whose pixels are heavy-tailed in two of the scenes.
+    TileEstimates ours =
+        replicate(reference.scene, method, truth.side, effort.replicas, effort.samples, effort.sampling);
+    // The reference comes from path tracing with next event estimation too, whose pixels are heavy-tailed in two of the
+    // scenes.
     ours.at_least(truth, double(reference.samples) / (effort.replicas * effort.samples));
     const Comparison comparison = compare(ours, truth, effort.false_alarm);
     INFO(reference.scene.name(), " ", M::name, " ", name(effort.sampling));

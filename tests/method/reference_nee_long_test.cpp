@@ -21,5 +21,6 @@ TEST_CASE("path tracing with next event estimation agrees with the reference to 
     const auto reference = veach_mis();
     check_reference(reference, lightswitch::PathTracerNee{}, {.replicas = 64, .samples = 64, .sampling = sobol});
     // Independent samples would need four times as many for the same bound.
-    check_reference(reference, lightswitch::PathTracerNee{}, {.replicas = 32, .samples = 32, .sampling = independent, .bias = 0.006});
+    check_reference(reference, lightswitch::PathTracerNee{},
+                    {.replicas = 32, .samples = 32, .sampling = independent, .bias = 0.006});
 }

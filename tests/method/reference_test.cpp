@@ -1,5 +1,5 @@
-// Against converged images of another renderer. False alarm: 1e-3 for each line. The bounds of the bias are those that a short render
-// can prove; the long test has 0.2 % for all.
+// Against converged images of another renderer. False alarm: 1e-3 for each line. The bounds of the bias are those that
+// a short render can prove; the long test has 0.2 % for all.
 
 #include "method/reference.hpp"
 

@@ -80,7 +80,8 @@ TEST_CASE("sampling methods differ, and say so in the image") {
     const LibraryDescription box = small_box();
     const DiffuseScene scene = build_scene<DiffuseBsdfs, Lights<TriangleLight>>(box);
     const Image sobol = render(scene, PathTracerNee{}, {.samples = 2}, {.seed = 3});
-    const Image independent = render(scene, PathTracerNee{}, {.samples = 2}, {.seed = 3, .sampling = Sampling::independent});
+    const Image independent =
+        render(scene, PathTracerNee{}, {.samples = 2}, {.seed = 3, .sampling = Sampling::independent});
     CHECK_FALSE(identical(sobol, independent));
     CHECK(sobol.metadata.at("method") == "path-nee");
     CHECK(sobol.metadata.at("kind") == "unbiased");

@@ -18,8 +18,8 @@ TEST_CASE("a light tracer agrees with path tracing") {
         LightTracer method = light_tracer_for(box, scene);
         method.bounces = bounces;
         method.paths = 20000;
-        const auto light = replicate(scene, method, 8, 24, 12);
-        const auto camera = replicate(scene, PathTracerNee{.max_depth = bounces + 1}, 8, 24, 32);
+        const auto light = replicate(scene, method, 8, 16, 8);
+        const auto camera = replicate(scene, PathTracerNee{.max_depth = bounces + 1}, 8, 16, 32);
         const Comparison comparison = compare(light, camera, 1e-3);
         CHECK_MESSAGE(comparison.agree(), bounces, " bounces: ", comparison);
     }

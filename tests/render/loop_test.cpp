@@ -147,7 +147,8 @@ TEST_CASE("a budget of error ends when the error is reached, and not before 16 i
     const Run jumping = run(rare, {.error = 0.25}, {.sampling = Sampling::independent});
     check_progress(jumping);
     bool jumped = false;
-    for (std::size_t i = 16; i < jumping.steps.size(); ++i) jumped |= jumping.steps[i].error > jumping.steps[i - 1].error;
+    for (std::size_t i = 16; i < jumping.steps.size(); ++i)
+        jumped |= jumping.steps[i].error > jumping.steps[i - 1].error;
     CHECK(jumped);
 }
 

@@ -1,5 +1,5 @@
-// What a user forgets in a method or a surface model of their own must be named by the compiler. Each CASE is complete as it is,
-// and lacks one thing when MUST_NOT_COMPILE is defined.
+// What a user forgets in a method or a surface model of their own must be named by the compiler. Each CASE is complete
+// as it is, and lacks one thing when MUST_NOT_COMPILE is defined.
 
 #include <lightswitch/method/path_tracer.hpp>
 #include <lightswitch/render/render.hpp>
@@ -38,9 +38,8 @@ struct Method {
     static constexpr std::string_view name = "start without iterate";
     static constexpr ls::Kind kind = ls::Kind::heuristic;
     int start(auto&) const { return 0; }
-    UNLESS_FORGOTTEN(void iterate(auto& frame, int&) const {
-        frame.pixels([](const ls::Ray&, auto&) { return ls::Rgb(0); });
-    })
+    UNLESS_FORGOTTEN(void iterate(auto& frame, int&)
+                         const { frame.pixels([](const ls::Ray&, auto&) { return ls::Rgb(0); }); })
 };
 #endif
 

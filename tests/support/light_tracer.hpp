@@ -10,15 +10,19 @@ namespace lightswitch::test {
 
 /// A pinhole camera turned around: where on the film a point in render space is seen, and how much it counts there.
 ///
-/// A pixel is the average of the radiance over its area A on the film. On a film at distance 1 from the pinhole, a surface
-/// element dS at distance d fills the film area dS cos(at the surface) / d^2 / cos^3, with the cosine to the optical axis: one
-/// because the film is tilted against the ray, two because it is 1 / cos away. So flux that would leave the element as radiance
-/// counts as W = 1 / (A cos^3) times the geometry cos(at the surface) / d^2.
+/// A pixel is the average of the radiance over its area A on the film. On a film at distance 1 from the pinhole, a
+/// surface element dS at distance d fills the film area dS cos(at the surface) / d^2 / cos^3, with the cosine to the
+/// optical axis: one because the film is tilted against the ray, two because it is 1 / cos away. So flux that would
+/// leave the element as radiance counts as W = 1 / (A cos^3) times the geometry cos(at the surface) / d^2.
 class Pinhole {
 public:
     Pinhole(const CameraDescription& camera, const FilmDescription& film, const RenderSpace& space)
-        : width_(film.width), height_(film.height), half_width_(std::tan(glm::radians(camera.fov) / 2)),
-          left_(camera.to_world[0]), up_(camera.to_world[1]), forward_(camera.to_world[2]),
+        : width_(film.width),
+          height_(film.height),
+          half_width_(std::tan(glm::radians(camera.fov) / 2)),
+          left_(camera.to_world[0]),
+          up_(camera.to_world[1]),
+          forward_(camera.to_world[2]),
           position_(space.point(DVec3(camera.to_world[3]))) {}
 
     struct View {
@@ -42,8 +46,9 @@ private:
     DVec3 left_, up_, forward_, position_;
 };
 
-/// Emission seen directly (slots), and light paths of `bounces` surface points, each connected to the camera (splats): what a
-/// path tracer sees up to depth `bounces` + 1. For scenes of one-sided diffuse surfaces and luminous triangles, with a box filter.
+/// Emission seen directly (slots), and light paths of `bounces` surface points, each connected to the camera (splats):
+/// what a path tracer sees up to depth `bounces` + 1. For scenes of one-sided diffuse surfaces and luminous triangles,
+/// with a box filter.
 struct LightTracer {
     static constexpr std::string_view name = "light-tracer";
     static constexpr Kind kind = Kind::unbiased;
@@ -74,8 +79,9 @@ private:
         const TriangleLight light = scene.with_light(TypedIndex(0, number), [](const TriangleLight& l) { return l; });
         const Vec2 on_light = uniform_triangle(sampler.next_2d());
         Vec3 direction = Basis(light.normal).to_world(cosine_hemisphere(sampler.next_2d()));
-        Ray ray{.origin = light.corner + on_light.x * light.edge1 + on_light.y * light.edge2 + light.offset * light.normal,
-                .direction = direction};
+        Ray ray{
+            .origin = light.corner + on_light.x * light.edge1 + on_light.y * light.edge2 + light.offset * light.normal,
+            .direction = direction};
         // Density of the ray: 1 / count over lights, 1 / area, cosine / pi. The cosine of emission cancels.
         Rgb flux = light.emission * (pi * count / light.density.value / static_cast<float>(paths));
         for (int bounce = 0; bounce < bounces; ++bounce) {

@@ -8,8 +8,8 @@
 
 namespace lightswitch::test {
 
-/// A floor and a few objects of random materials under random lights, all of them so large that a path tracer finds them. The
-/// camera is anywhere, also inside of things. 16 x 16 pixels.
+/// A floor and a few objects of random materials under random lights, all of them so large that a path tracer finds
+/// them. The camera is anywhere, also inside of things. 16 x 16 pixels.
 inline LibraryDescription random_scene(std::uint32_t seed) {
     Random random(seed);
     const auto number = [&](double low, double high) { return low + (high - low) * double(random.next()); };
@@ -18,20 +18,21 @@ inline LibraryDescription random_scene(std::uint32_t seed) {
         return Rgb(DVec3(number(low, high), number(low, high), number(low, high)));
     };
     const auto rough = [&] {
-        return RoughConductor{.alpha = float(number(0.15, 0.6)), .eta = color(0.1, 2), .k = color(1, 4), .reflectance = color(0.5, 1)};
+        return RoughConductor{
+            .alpha = float(number(0.15, 0.6)), .eta = color(0.1, 2), .k = color(1, 4), .reflectance = color(0.5, 1)};
     };
 
     LibraryDescription scene;
     scene.name = "random-" + std::to_string(seed);
     const auto material = [&]() -> std::size_t {
         switch (below(8)) {
-        case 0: return scene.add(Dielectric{.eta = float(number(1.2, 1.8))});
-        case 1: return scene.add(Conductor{.reflectance = color(0.5, 1)});
-        case 2: return scene.add(TwoSided<Conductor>{{.eta = color(0.1, 2), .k = color(1, 4)}});
-        case 3: return scene.add(rough());
-        case 4: return scene.add(TwoSided<RoughConductor>{rough()});
-        case 5: return scene.add(Lambert{color(0.1, 0.9)});
-        default: return scene.add(TwoSided<Lambert>{{color(0.1, 0.9)}});
+            case 0: return scene.add(Dielectric{.eta = float(number(1.2, 1.8))});
+            case 1: return scene.add(Conductor{.reflectance = color(0.5, 1)});
+            case 2: return scene.add(TwoSided<Conductor>{{.eta = color(0.1, 2), .k = color(1, 4)}});
+            case 3: return scene.add(rough());
+            case 4: return scene.add(TwoSided<RoughConductor>{rough()});
+            case 5: return scene.add(Lambert{color(0.1, 0.9)});
+            default: return scene.add(TwoSided<Lambert>{{color(0.1, 0.9)}});
         }
     };
 
@@ -47,17 +48,19 @@ inline LibraryDescription random_scene(std::uint32_t seed) {
     for (int i = 0; i < 3; ++i) {
         const std::size_t bsdf = material();
         switch (below(3)) {
-        case 0: scene.add(Sphere{{number(-1.5, 1.5), number(-0.6, 0.6), number(-1.5, 1.5)}, number(0.3, 0.8)}, bsdf); break;
-        case 1: scene.add(cube(place(0.5)), bsdf); break;
-        default: scene.add(stock::torus_knot(60, 8, 0.2).transformed(place(0.7)), bsdf); break;  // smooth normals
+            case 0:
+                scene.add(Sphere{{number(-1.5, 1.5), number(-0.6, 0.6), number(-1.5, 1.5)}, number(0.3, 0.8)}, bsdf);
+                break;
+            case 1: scene.add(cube(place(0.5)), bsdf); break;
+            default: scene.add(stock::torus_knot(60, 8, 0.2).transformed(place(0.7)), bsdf); break;  // smooth normals
         }
     }
 
     const int kinds = 1 + below(7);  // bits: environment, sphere, rectangle
     if (kinds & 1) scene.add(EnvironmentSource{color(0.3, 1)});
     if (kinds & 2)
-        scene.add(Sphere{{number(-2, 2), number(1.2, 2), number(-2, 2)}, number(0.5, 0.9)}, scene.add(Lambert{color(0, 0.8)}),
-                  color(1, 5));
+        scene.add(Sphere{{number(-2, 2), number(1.2, 2), number(-2, 2)}, number(0.5, 0.9)},
+                  scene.add(Lambert{color(0, 0.8)}), color(1, 5));
     if (kinds & 4)
         scene.add(quad({-1.5, 2.5, -1.5}, {1.5, 2.5, -1.5}, {1.5, number(2, 2.5), 1.5}, {-1.5, 2.5, 1.5}),
                   scene.add(TwoSided<Lambert>{{color(0, 0.8)}}), color(1, 5));

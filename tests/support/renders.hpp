@@ -40,7 +40,8 @@ inline LibraryDescription describe_veach_mis() {
     scene.add(Sphere{{3.75, 0, 0}, 0.9}, black, Rgb(1.23457f));
     const auto plate = [&](float alpha, double y0, double z0, double y1, double z1) {
         const RoughConductor metal{.alpha = alpha, .reflectance = {0.7f, 0.75f, 0.8f}};
-        scene.add(quad({4, y0, z0}, {4, y1, z1}, {-4, y1, z1}, {-4, y0, z0}), scene.add(TwoSided<RoughConductor>{metal}));
+        scene.add(quad({4, y0, z0}, {4, y1, z1}, {-4, y1, z1}, {-4, y0, z0}),
+                  scene.add(TwoSided<RoughConductor>{metal}));
     };
     plate(0.005f, -2.70651, 0.25609, -2.08375, -0.526323);
     plate(0.02f, -3.28825, 1.36972, -2.83856, 0.476536);

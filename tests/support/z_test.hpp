@@ -22,7 +22,8 @@ inline double incomplete_beta(double a, double b, double x) {
     if (!(x > 0)) return 0;
     if (!(x < 1)) return 1;
     if (x > (a + 1) / (a + b + 2)) return 1 - incomplete_beta(b, a, 1 - x);
-    const double front = std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x)) / a;
+    const double front =
+        std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x)) / a;
     double c = 1, d = 1 / (1 - (a + b) * x / (a + 1)), h = d;
     for (int m = 1; m < 10000; ++m) {
         const double even = m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m));
@@ -70,14 +71,14 @@ struct Estimate {
 
     /// Welch and Satterthwaite.
     friend Estimate operator-(const Estimate& a, const Estimate& b) {
-        const double variance = a.variance + b.variance;
+        const double sum = a.variance + b.variance;
         const double inverse = a.variance * a.variance / a.freedom + b.variance * b.variance / b.freedom;
-        return {a.mean - b.mean, variance, inverse > 0 ? variance * variance / inverse : a.freedom + b.freedom};
+        return {a.mean - b.mean, sum, inverse > 0 ? sum * sum / inverse : a.freedom + b.freedom};
     }
 };
 
-/// The probability of a difference at least as large when the expectations are equal. Differences within the rounding of float
-/// images do not count: `slack` is relative to the values.
+/// The probability of a difference at least as large when the expectations are equal. Differences within the rounding
+/// of float images do not count: `slack` is relative to the values.
 inline double welch_p(const Estimate& a, const Estimate& b, double slack = 1e-6) {
     const Estimate difference = a - b;
     const double beyond = std::abs(difference.mean) - slack * (std::abs(a.mean) + std::abs(b.mean));
@@ -91,9 +92,9 @@ struct TileEstimates {
     std::vector<Estimate> tiles;
     Estimate whole[3];
 
-    /// No tile's variance below that of `other` times `factor`. Where light is found rarely, a few replicas often all miss it, and
-    /// then seem more certain than they are; a longer render of the same kind knows better. With the ratio of the numbers of
-    /// samples as `factor`, this only removes such false alarms.
+    /// No tile's variance below that of `other` times `factor`. Where light is found rarely, a few replicas often all
+    /// miss it, and then seem more certain than they are; a longer render of the same kind knows better. With the ratio
+    /// of the numbers of samples as `factor`, this only removes such false alarms.
     TileEstimates& at_least(const TileEstimates& other, double factor) {
         for (std::size_t i = 0; i < tiles.size(); ++i)
             if (tiles[i].variance < factor * other.tiles[i].variance) {
@@ -107,7 +108,8 @@ struct TileEstimates {
     TileEstimates joined(int n) const {
         TileEstimates result{.columns = columns / n, .rows = rows / n, .side = side * n, .tiles = {}, .whole = {}};
         std::copy(whole, whole + 3, result.whole);
-        result.tiles.resize(3 * static_cast<std::size_t>(result.columns * result.rows), Estimate{0, 0, tiles[0].freedom});
+        result.tiles.resize(3 * static_cast<std::size_t>(result.columns * result.rows),
+                            Estimate{0, 0, tiles[0].freedom});
         for (int y = 0; y < result.rows * n; ++y)
             for (int x = 0; x < result.columns * n; ++x)
                 for (int c = 0; c < 3; ++c) {
@@ -120,7 +122,8 @@ struct TileEstimates {
     }
 };
 
-/// Collects independent images of one scene. Tiles average over many pixels and samples, so that their values are close to normal.
+/// Collects independent images of one scene. Tiles average over many pixels and samples, so that their values are close
+/// to normal.
 class Replicas {
 public:
     explicit Replicas(int side) : side_(side) {}
@@ -184,20 +187,22 @@ struct Comparison {
     double smallest = 1;  ///< p-value
     int tests = 0, worst_tile = -1, worst_channel = 0;
     double ours = 0, theirs = 0;  ///< where it is worst
-    /// Of all tiles together: sees small differences that are everywhere, where `smallest` sees large ones at one place.
+    /// Of all tiles together: sees small differences that are everywhere, where `smallest` sees large ones at one
+    /// place.
     ChiSquare together;
 
     bool agree() const { return smallest > level && together.p_value > level; }
 
     friend std::ostream& operator<<(std::ostream& out, const Comparison& c) {
-        return out << "smallest p " << c.smallest << " of " << c.tests << " (level " << c.level << ") at tile " << c.worst_tile
-                   << " channel " << c.worst_channel << ": " << c.ours << " against " << c.theirs << "; together " << c.together;
+        return out << "smallest p " << c.smallest << " of " << c.tests << " (level " << c.level << ") at tile "
+                   << c.worst_tile << " channel " << c.worst_channel << ": " << c.ours << " against " << c.theirs
+                   << "; together " << c.together;
     }
 };
 
-/// Compares all tiles and the whole, in all channels. When the expectations are equal, it disagrees with a probability of at most
-/// `false_alarm`, if that is shared with `others` - 1 comparisons of the same size (Sidak; channels and the whole depend on the
-/// tiles, which only makes it rarer).
+/// Compares all tiles and the whole, in all channels. When the expectations are equal, it disagrees with a probability
+/// of at most `false_alarm`, if that is shared with `others` - 1 comparisons of the same size (Sidak; channels and the
+/// whole depend on the tiles, which only makes it rarer).
 inline Comparison compare(const TileEstimates& a, const TileEstimates& b, double false_alarm, int others = 1) {
     Comparison result;
     if (a.columns != b.columns || a.rows != b.rows) throw std::logic_error("tiles of different images");

@@ -33,7 +33,8 @@ TEST_CASE("Student's t has its tabulated quantiles") {
     CHECK(student_p(1.95996, infinity) == doctest::Approx(0.05).epsilon(1e-4));
     CHECK(student_p(2.5, 1e7) == doctest::Approx(student_p(2.5, infinity)).epsilon(1e-5));
     for (const double freedom : {1.0, 4.5, 31.0, double(infinity)})
-        for (const double p : {0.5, 0.01, 1e-6}) CHECK(student_p(student_quantile(p, freedom), freedom) == doctest::Approx(p));
+        for (const double p : {0.5, 0.01, 1e-6})
+            CHECK(student_p(student_quantile(p, freedom), freedom) == doctest::Approx(p));
 }
 
 TEST_CASE("an estimate of values") {
@@ -50,8 +51,8 @@ TEST_CASE("an estimate of values") {
     CHECK(welch_p(Estimate{std::nan(""), 1, 9}, e) == 0);
 }
 
-// 400 comparisons that may each give a false alarm with probability 0.05: more than 42 of them happen with probability 2e-6.
-// Without that many being possible, at least one does not happen with probability 1e-9.
+// 400 comparisons that may each give a false alarm with probability 0.05: more than 42 of them happen with probability
+// 2e-6. Without that many being possible, at least one does not happen with probability 1e-9.
 TEST_CASE("false alarms are as rare as promised, and not rarer by much") {
     std::mt19937 engine(3);
     int alarms = 0, together = 0;

@@ -18,6 +18,7 @@ struct PathTracer {
 
     Rgb radiance(const auto& scene, Ray ray, auto& sampler) const {
         Rgb sum(0), throughput(1);
+        if (max_depth == 0) return sum;
         float eta = 1;
         for (int depth = 1;; ++depth) {
             const auto hit = scene.intersect(ray);

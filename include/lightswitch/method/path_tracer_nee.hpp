@@ -18,6 +18,7 @@ struct PathTracerNee {
 
     Rgb radiance(const auto& scene, Ray ray, auto& sampler) const {
         Rgb sum(0), throughput(1);
+        if (max_depth == 0) return sum;
         float eta = 1;
         // What light sampling at the vertex before could have found is met with this density, from there; weight 1 when it
         // could not: at the camera and after a specular bounce.

@@ -6,7 +6,7 @@ namespace lightswitch {
 
 /// How long paths may become: what every path-based method asks its user.
 struct PathLength {
-    int max_depth = -1;  ///< 1 is emission seen directly, 2 adds direct light, and so on; -1 is unlimited
+    int max_depth = -1;  ///< 1 is emission seen directly, 2 adds direct light, and so on; 0 is black, -1 unlimited
     int rr_depth = 5;    ///< Russian roulette begins after that many bounces
 };
 

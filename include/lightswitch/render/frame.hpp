@@ -38,10 +38,17 @@ struct RenderCounts {
 
 namespace detail {
 
+inline constexpr std::size_t max_noted = 16;
+
 /// What one work unit found out; units share nothing while they run.
 struct UnitReport {
     std::uint64_t rays = 0, shadow_rays = 0, non_finite = 0;
-    std::vector<NonFinite> where;
+    std::vector<NonFinite> where;  // the first of them
+
+    void note(const NonFinite& found) {
+        ++non_finite;
+        if (where.size() < max_noted) where.push_back(found);
+    }
 };
 
 /// Counts the rays of a unit by the thread's counters before and after.
@@ -79,8 +86,7 @@ public:
         const auto pixel = static_cast<std::uint32_t>(at.y) * static_cast<std::uint32_t>(width_) +
                            static_cast<std::uint32_t>(at.x);
         if (!is_finite(value)) {
-            ++report_->non_finite;
-            report_->where.push_back({iteration_, seed_, pixel});
+            report_->note({iteration_, seed_, pixel});
             return;
         }
         splats_->push_back({pixel, value});
@@ -178,8 +184,7 @@ private:
         if (is_finite(value)) [[likely]] {
             film_.slot(pixel) += value;
         } else {
-            ++report.non_finite;
-            report.where.push_back({iteration_, seed_, static_cast<std::uint32_t>(pixel)});
+            report.note({iteration_, seed_, static_cast<std::uint32_t>(pixel)});
         }
     }
 
@@ -193,7 +198,7 @@ private:
         }
         std::sort(where.begin(), where.end());
         auto& kept = counts_.first_non_finite;
-        const std::size_t room = kept.size() < 16 ? 16 - kept.size() : 0;
+        const std::size_t room = detail::max_noted - kept.size();
         kept.insert(kept.end(), where.begin(), where.begin() + std::ptrdiff_t(std::min(room, where.size())));
     }
 

@@ -1,4 +1,5 @@
-// Reduces two independent halves of a reference image to the tile data that the tests read; see README.md beside this file.
+// Reduces two independent halves of a reference image to the tile data that the tests read; see README.md beside this
+// file.
 //
 //   make_tiles A.pfm B.pfm > NAME.txt       prints a check of the reference's own error to standard error
 
@@ -64,8 +65,10 @@ int main(int argc, char** argv) {
                     ++count;
                 }
             }
-            std::printf("%.9g %.9g %.9g %.4g %.4g %.4g\n", mean[0], mean[1], mean[2], variance[0], variance[1], variance[2]);
+            std::printf("%.9g %.9g %.9g %.4g %.4g %.4g\n", mean[0], mean[1], mean[2], variance[0], variance[1],
+                        variance[2]);
         }
-    std::fprintf(stderr, "squared difference of the halves, tiles over pixels: %.3f (1 when pixels err independently)\n",
+    std::fprintf(stderr,
+                 "squared difference of the halves, tiles over pixels: %.3f (1 when pixels err independently)\n",
                  ratio / count);
 }
