@@ -254,7 +254,7 @@ private:
     }
 
     /// The length of a triangle over its height. Beyond `needle` Embree's fast test is too inexact to bound: of the rays that leave
-    /// such triangles, one in 1000 at 1:100 and one in 20 at 1:1000 was seen to hit them again, and none with its watertight test.
+    /// such triangles, one in 1000 at 1:100 and one in 20 at 1:1000 was seen to hit them again, and one in 10^5 with its watertight test.
     /// A mesh that owes more than a hundredth of its area to them makes the scene use that test.
     static double slenderness(const DVec3& a, const DVec3& b, const DVec3& c, double twice_area) {
         const DVec3 ab = b - a, bc = c - b, ca = a - c;
@@ -292,7 +292,8 @@ private:
 /// Builds a scene of the given type, for example `build_scene<Bsdfs<Lambert>, Lights<TriangleLight>>(description)`.
 ///
 /// Throws `Error`, naming the place in the file if there is one, when something in the description is impossible or when the
-/// type has no room for it. Needs memory of about 100 bytes per triangle beside what Embree takes.
+/// type has no room for it. Beside what Embree takes the scene keeps 36 bytes per triangle with interpolated normals, and nothing per
+/// flat one.
 template <class BsdfList, class LightList = AllLights, class Material>
 Scene<BsdfList, LightList> build_scene(const SceneDescription<Material>& description, const BuildOptions& options = {}) {
     return detail::SceneAssembly<BsdfList, LightList>(options).build(description);
