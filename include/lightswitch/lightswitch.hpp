@@ -2,6 +2,7 @@
 
 // Everything but the loaders of scene files (see load/).
 
+#include <lightswitch/compare/verify.hpp>
 #include <lightswitch/film/image_io.hpp>
 #include <lightswitch/render/any_method.hpp>
 #include <lightswitch/render/render.hpp>

@@ -1,4 +1,5 @@
 #include "program.hpp"
+#include "report.hpp"
 
 #include <lightswitch/compare/difference.hpp>
 #include <lightswitch/compare/false_color.hpp>
@@ -39,33 +40,30 @@ Extremes find_extremes(const Image& difference) {
 
 void line(std::string_view label, const std::string& text) { fmt::print("{:<12}{}\n", label, text); }
 
-}  // namespace
-
-int compare(const CompareOptions& options) {
-    for (const auto& output : options.outputs) {
-        check_writable(output);
-        if (has_extension(output, ".hdr") && !options.absolute)
-            throw Error(output.string() + ": .hdr holds no negative values; use .exr or .pfm, or --absolute");
-    }
-    const Image a = load_image(options.a), b = load_image(options.b);
-    const Image signed_difference = difference(a, b);
-
+void print_comparison(const NamedImage& image, const NamedImage& reference, const Image& difference) {
+    const Image &a = image.image, &b = reference.image;
     const DVec3 mean_a = a.mean(), mean_b = b.mean();
-    const Extremes extremes = find_extremes(signed_difference);
-    line("A", fmt::format("{}, {} x {} pixels", options.a.string(), a.width(), a.height()));
-    line("B", fmt::format("{}, the reference", options.b.string()));
+    const Extremes extremes = find_extremes(difference);
+    line("A", fmt::format("{}, {} x {} pixels", image.name, a.width(), a.height()));
+    line("B", fmt::format("{}, the reference", reference.name));
     line("mean A", fmt::format("{:.6g} {:.6g} {:.6g}", mean_a.x, mean_a.y, mean_a.z));
     line("mean B", fmt::format("{:.6g} {:.6g} {:.6g}", mean_b.x, mean_b.y, mean_b.z));
     line("mean ratio", fmt::format("{:.6f}", mean_ratio(a, b)));
     line("MSE", fmt::format("{:.6g}", mse(a, b)));
     line("RMSE", fmt::format("{:.6g}", rmse(a, b)));
     line("relMSE", fmt::format("{:.6g}", relmse(a, b)));
+    line("MAPE", fmt::format("{:.6g}", mape(a, b)));
+    line("SMAPE", fmt::format("{:.6g}", smape(a, b)));
     line("max |A - B|", extremes.largest > 0
                             ? fmt::format("{:.6g} at pixel ({}, {})", extremes.largest, extremes.x, extremes.y)
                             : "0");
     if (extremes.not_finite > 0) line("not finite", fmt::format("{} pixels of A - B", extremes.not_finite));
+}
 
-    const Image shown = options.absolute ? absolute_difference(a, b) : signed_difference;
+void write_difference(const CompareOptions& options, const Image& signed_difference) {
+    Image shown = signed_difference;
+    if (options.absolute)
+        for (Rgb& p : shown.pixels()) p = glm::abs(p);
     for (const auto& output : options.outputs) {
         if (!has_extension(output, ".png")) {
             save(output, shown);
@@ -76,6 +74,37 @@ int compare(const CompareOptions& options) {
                                          .scale = options.scale,
                                          .caption = options.absolute ? "|A - B|" : "A - B"}));
     }
+}
+
+/// Everything that can be known to be unwritable before the work begins.
+void check_outputs(const CompareOptions& options) {
+    for (const auto& output : options.outputs) {
+        check_writable(output);
+        if (has_extension(output, ".hdr") && !options.absolute)
+            throw Error(output.string() + ": .hdr holds no negative values; use .exr or .pfm, or --absolute");
+    }
+    if (!options.report.empty()) check_file_writable(options.report);
+}
+
+}  // namespace
+
+int compare(const CompareOptions& options) {
+    if (options.images.size() < (options.reference.empty() ? 2u : 1u))
+        throw Error(options.reference.empty() ? "compare: name two images" : "compare: name an image");
+    check_outputs(options);
+    std::vector<NamedImage> images;
+    for (const auto& path : options.images) images.push_back({path.string(), load_image(path)});
+    if (!options.reference.empty()) images.push_back({options.reference.string(), load_image(options.reference)});
+    const NamedImage& reference = images.back();
+
+    std::vector<Image> differences;  // all of them before anything is printed: one may be refused
+    for (std::size_t i = 0; i + 1 < images.size(); ++i) differences.push_back(difference(images[i].image, reference.image));
+    for (std::size_t i = 0; i < differences.size(); ++i) {
+        if (i > 0) fmt::print("\n");
+        print_comparison(images[i], reference, differences[i]);
+    }
+    write_difference(options, differences.front());
+    if (!options.report.empty()) save_report(options.report, comparison_report(images, images.size() - 1));
     return success;
 }
 

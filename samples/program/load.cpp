@@ -62,9 +62,13 @@ SceneSummary summarize(const LibraryDescription& scene) {
 
 LoadedScene load_scene(const SceneOptions& options) {
     LibraryDescription description = describe(options);
+    FilmDescription& film = description.film;
     if (options.size) {
-        description.film.width = options.size->width;
-        description.film.height = options.size->height;
+        film.width = options.size->width;
+        film.height = options.size->height;
+    } else if (const int side = std::max(film.width, film.height); options.shrink_to > 0 && side > options.shrink_to) {
+        film.width = std::max(1, static_cast<int>(std::lround(double(film.width) * options.shrink_to / side)));
+        film.height = std::max(1, static_cast<int>(std::lround(double(film.height) * options.shrink_to / side)));
     }
     if (options.filter) description.film.filter = *options.filter;
     SceneSummary summary = summarize(description);

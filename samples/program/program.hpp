@@ -2,6 +2,7 @@
 
 // The sub-commands of the program `lightswitch`, and what the command line says to them.
 
+#include <lightswitch/compare/verify.hpp>
 #include <lightswitch/film/filter.hpp>
 #include <lightswitch/render/render.hpp>
 #include <lightswitch/scene/build.hpp>
@@ -15,7 +16,7 @@
 namespace lightswitch::program {
 
 /// Exit statuses.
-enum Status { success = 0, user_error = 2, cancelled = 130 };
+enum Status { success = 0, disagrees = 1, user_error = 2, undecided = 3, cancelled = 130 };
 
 /// The size of an image in pixels.
 struct Size {
@@ -27,6 +28,7 @@ struct SceneOptions {
     std::string scene;  ///< a file that ends in .xml, or the name of a stock scene
     std::map<std::string, std::string> defines;
     std::optional<Size> size;      ///< instead of what the scene says
+    int shrink_to = 0;             ///< where `size` is not given, the longest side in pixels; 0: as the scene says
     std::optional<Filter> filter;  ///< instead of what the scene says
     BuildOptions build;
 };
@@ -46,15 +48,29 @@ struct RenderOptions {
 };
 
 struct CompareOptions {
-    std::filesystem::path a, b;
+    std::vector<std::filesystem::path> images;
+    std::filesystem::path reference;  ///< where it is empty, the last of the images
     std::vector<std::filesystem::path> outputs;
+    std::filesystem::path report;  ///< may be empty
     bool absolute = false;
     float scale = 0;  ///< 0: chosen by the image
+};
+
+struct VerifyCommand {
+    SceneOptions scene;  ///< may be empty where `against` is given
+    std::vector<std::string> methods;
+    std::string reference;
+    std::vector<std::string> images, against;  ///< patterns of file names
+    std::optional<int> max_depth;
+    VerifyOptions options{.seconds = 60};
+    std::string report, json;  ///< files, or empty; `json` may be "-"
+    bool quiet = false;
 };
 
 // Each runs one sub-command and returns the program's exit status. They throw `Error` for what the user can mend.
 int render(const RenderOptions& options);
 int compare(const CompareOptions& options);
+int verify(const VerifyCommand& command);
 int info(const SceneOptions& options);
 int list_methods();
 

@@ -29,14 +29,19 @@ constexpr auto erase_line = "\r\033[K";
 
 ProgressLine::ProgressLine(bool wanted) : shown_(wanted && isatty(STDERR_FILENO) == 1) {}
 
+void ProgressLine::update(double seconds, const std::string& text) {
+    if (!shown_ || seconds < next_) return;
+    next_ = seconds + 0.1;
+    dirty_ = true;
+    write(erase_line + text);
+}
+
 void ProgressLine::update(const Progress& progress, std::uint64_t rays) {
     if (!shown_ || progress.seconds < next_) return;
-    next_ = progress.seconds + 0.1;
-    dirty_ = true;
     const double rate = progress.seconds > 0 ? double(rays) / progress.seconds : 0;
     const std::string left = progress.fraction > 0 ? ", " + duration(progress.seconds_left) + " left" : std::string();
-    write(fmt::format("{}{:3.0f} %  {} samples per pixel  {}{}  {:.2f} Mrays/s", erase_line, 100 * progress.fraction,
-                      progress.iterations, duration(progress.seconds), left, rate * 1e-6));
+    update(progress.seconds, fmt::format("{:3.0f} %  {} samples per pixel  {}{}  {:.2f} Mrays/s", 100 * progress.fraction,
+                                         progress.iterations, duration(progress.seconds), left, rate * 1e-6));
 }
 
 void ProgressLine::clear() {

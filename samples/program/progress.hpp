@@ -16,6 +16,8 @@ public:
     ProgressLine& operator=(const ProgressLine&) = delete;
 
     void update(const Progress& progress, std::uint64_t rays);
+    /// Any text, after so many seconds of work.
+    void update(double seconds, const std::string& text);
     void clear();
 
 private:

@@ -1,8 +1,9 @@
 #pragma once
 
-// One render, compiled for one method: each method has a translation unit of its own, run_*.cpp, so that they build in
-// parallel and the rest of the program never sees the loop.
+// One render by one method. Each method has a translation unit of its own, run_*.cpp, so that they build in parallel and the rest of
+// the program never sees the loop.
 
+#include <lightswitch/compare/estimator.hpp>
 #include <lightswitch/render/any_method.hpp>
 #include <lightswitch/render/render.hpp>
 #include <lightswitch/scene/any_scene.hpp>
@@ -30,19 +31,8 @@ struct Rendered {
 template <class M>
 Rendered run(const AnyScene& scene, const M& method, const Job& job);
 
+/// The method on the scene as a side of `verify`. The scene must outlive it.
 template <class M>
-Rendered run(const AnyScene& any_scene, const M& method, const Job& job) {
-    return std::visit(
-        [&](const auto& scene) -> Rendered {
-            const RenderStatistics* statistics = nullptr;
-            Settings settings = job.settings;
-            settings.observer = [&](const Progress& progress) { job.observer(progress, *statistics); };
-            Session session(scene, method, settings);
-            statistics = &session.statistics();
-            session.run(job.budget);
-            return {session.image(), session.statistics(), session.film().relative_error()};
-        },
-        any_scene);
-}
+Estimator make_estimator(const AnyScene& scene, const M& method, const Settings& settings);
 
 }  // namespace lightswitch::program

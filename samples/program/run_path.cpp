@@ -1,3 +1,4 @@
-#include "run.hpp"
+#include "run_method.hpp"
 
 template lightswitch::program::Rendered lightswitch::program::run(const AnyScene&, const PathTracer&, const Job&);
+template lightswitch::Estimator lightswitch::program::make_estimator(const AnyScene&, const PathTracer&, const Settings&);

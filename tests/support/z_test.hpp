@@ -4,6 +4,7 @@
 
 #include "support/chi_square.hpp"
 
+#include <lightswitch/compare/statistics.hpp>
 #include <lightswitch/film/image.hpp>
 
 #include <algorithm>
@@ -16,75 +17,6 @@
 #include <vector>
 
 namespace lightswitch::test {
-
-/// Regularised incomplete beta function I_x(a, b) by Lentz's continued fraction (Numerical Recipes, section 6.4).
-inline double incomplete_beta(double a, double b, double x) {
-    if (!(x > 0)) return 0;
-    if (!(x < 1)) return 1;
-    if (x > (a + 1) / (a + b + 2)) return 1 - incomplete_beta(b, a, 1 - x);
-    const double front =
-        std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x)) / a;
-    double c = 1, d = 1 / (1 - (a + b) * x / (a + 1)), h = d;
-    for (int m = 1; m < 10000; ++m) {
-        const double even = m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m));
-        const double odd = -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1));
-        d = 1 / (1 + even * d);
-        c = 1 + even / c;
-        h *= c * d;
-        d = 1 / (1 + odd * d);
-        c = 1 + odd / c;
-        h *= c * d;
-        if (std::abs(c * d - 1) < 1e-15) break;
-    }
-    return front * h;
-}
-
-/// Probability that Student's t with that many degrees of freedom is at least |t| away from 0, on either side.
-inline double student_p(double t, double freedom) {
-    if (std::isinf(freedom)) return std::erfc(std::abs(t) / std::sqrt(2.0));
-    return incomplete_beta(0.5 * freedom, 0.5, freedom / (freedom + t * t));
-}
-
-/// The |t| that is exceeded with probability `p`.
-inline double student_quantile(double p, double freedom) {
-    double low = 0, high = 1;
-    while (student_p(high, freedom) > p) high *= 2;
-    for (int i = 0; i < 100; ++i) {
-        const double middle = 0.5 * (low + high);
-        (student_p(middle, freedom) > p ? low : high) = middle;
-    }
-    return high;
-}
-
-/// A mean, the variance of it, and the degrees of freedom with which that variance is known.
-struct Estimate {
-    double mean = 0, variance = 0, freedom = std::numeric_limits<double>::infinity();
-
-    /// Of independent values that have the same expectation.
-    static Estimate of(std::span<const double> values) {
-        const double n = static_cast<double>(values.size());
-        double sum = 0, squares = 0;
-        for (const double v : values) sum += v;
-        for (const double v : values) squares += (v - sum / n) * (v - sum / n);
-        return {sum / n, squares / (n * (n - 1)), n - 1};
-    }
-
-    /// Welch and Satterthwaite.
-    friend Estimate operator-(const Estimate& a, const Estimate& b) {
-        const double sum = a.variance + b.variance;
-        const double inverse = a.variance * a.variance / a.freedom + b.variance * b.variance / b.freedom;
-        return {a.mean - b.mean, sum, inverse > 0 ? sum * sum / inverse : a.freedom + b.freedom};
-    }
-};
-
-/// The probability of a difference at least as large when the expectations are equal. Differences within the rounding
-/// of float images do not count: `slack` is relative to the values.
-inline double welch_p(const Estimate& a, const Estimate& b, double slack = 1e-6) {
-    const Estimate difference = a - b;
-    const double beyond = std::abs(difference.mean) - slack * (std::abs(a.mean) + std::abs(b.mean));
-    if (!(beyond > 0)) return std::isnan(beyond) ? 0 : 1;
-    return difference.variance > 0 ? student_p(beyond / std::sqrt(difference.variance), difference.freedom) : 0;
-}
 
 /// Estimates of the tiles of an image (row by row from the top, three channels each) and of the whole.
 struct TileEstimates {
@@ -109,7 +41,7 @@ struct TileEstimates {
         TileEstimates result{.columns = columns / n, .rows = rows / n, .side = side * n, .tiles = {}, .whole = {}};
         std::copy(whole, whole + 3, result.whole);
         result.tiles.resize(3 * static_cast<std::size_t>(result.columns * result.rows),
-                            Estimate{0, 0, tiles[0].freedom});
+                            Estimate{.freedom = tiles[0].freedom});
         for (int y = 0; y < result.rows * n; ++y)
             for (int x = 0; x < result.columns * n; ++x)
                 for (int c = 0; c < 3; ++c) {
@@ -209,7 +141,8 @@ inline Comparison compare(const TileEstimates& a, const TileEstimates& b, double
     result.tests = static_cast<int>(a.tiles.size()) + 4;
     result.level = sidak(false_alarm, result.tests * others);
     const auto test = [&](const Estimate& ours, const Estimate& theirs, int tile, int channel) {
-        const double p = welch_p(ours, theirs);
+        // Differences within the rounding of float images do not count.
+        const double p = welch_p(ours, theirs, 1e-6 * (std::abs(ours.mean) + std::abs(theirs.mean)));
         if (p < result.smallest) {
             result.smallest = p;
             result.worst_tile = tile;

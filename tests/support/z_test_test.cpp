@@ -25,32 +25,6 @@ TileEstimates noise(std::mt19937& engine, double level, int replicas) {
 
 }  // namespace
 
-TEST_CASE("Student's t has its tabulated quantiles") {
-    CHECK(student_p(0, 7) == doctest::Approx(1));
-    CHECK(student_p(12.7062, 1) == doctest::Approx(0.05).epsilon(1e-4));
-    CHECK(student_p(2.22814, 10) == doctest::Approx(0.05).epsilon(1e-4));
-    CHECK(student_p(-3.64596, 30) == doctest::Approx(0.001).epsilon(1e-3));
-    CHECK(student_p(1.95996, infinity) == doctest::Approx(0.05).epsilon(1e-4));
-    CHECK(student_p(2.5, 1e7) == doctest::Approx(student_p(2.5, infinity)).epsilon(1e-5));
-    for (const double freedom : {1.0, 4.5, 31.0, double(infinity)})
-        for (const double p : {0.5, 0.01, 1e-6})
-            CHECK(student_p(student_quantile(p, freedom), freedom) == doctest::Approx(p));
-}
-
-TEST_CASE("an estimate of values") {
-    const double values[] = {1, 2, 4, 9};
-    const Estimate e = Estimate::of(values);
-    CHECK(e.mean == 4);
-    CHECK(e.variance == doctest::Approx(38.0 / 12));
-    CHECK(e.freedom == 3);
-    // Equal variances and sizes: the degrees of freedom add up. A certain value adds none.
-    CHECK((e - e).freedom == doctest::Approx(6));
-    CHECK((e - Estimate{1, 0}).freedom == doctest::Approx(3));
-    CHECK(welch_p(e, e) == 1);
-    CHECK(welch_p(Estimate{1, 0}, Estimate{1.1, 0}) == 0);
-    CHECK(welch_p(Estimate{std::nan(""), 1, 9}, e) == 0);
-}
-
 // 400 comparisons that may each give a false alarm with probability 0.05: more than 42 of them happen with probability
 // 2e-6. Without that many being possible, at least one does not happen with probability 1e-9.
 TEST_CASE("false alarms are as rare as promised, and not rarer by much") {

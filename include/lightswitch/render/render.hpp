@@ -142,6 +142,7 @@ public:
                            {"samples", std::to_string(film_.iterations())},
                            {"seed", std::to_string(settings_.seed)},
                            {"sampling", std::string(lightswitch::name(settings_.sampling))}};
+        if (statistics_.counts.non_finite > 0) result.metadata["non_finite"] = std::to_string(statistics_.counts.non_finite);
         return result;
     }
 
@@ -172,7 +173,7 @@ private:
     }
 
     const SceneType& scene_;
-    const M& method_;
+    M method_;
     Settings settings_;
     E executor_;
     Film film_;

@@ -1,0 +1,17 @@
+#pragma once
+
+// The options of each sub-command: what they are called, what they mean, and how they are read.
+
+#include "program.hpp"
+
+#include <CLI/CLI.hpp>
+
+namespace lightswitch::program {
+
+// Each adds one sub-command's options, with their help; reading them throws `Error`.
+void add_scene_options(CLI::App& app, SceneOptions& options);
+void add_render(CLI::App& app, RenderOptions& options);
+void add_compare(CLI::App& app, CompareOptions& options);
+void add_verify(CLI::App& app, VerifyCommand& command);
+
+}  // namespace lightswitch::program

@@ -1,0 +1,245 @@
+#include "cancellation.hpp"
+#include "load.hpp"
+#include "messages.hpp"
+#include "method_notes.hpp"
+#include "progress.hpp"
+#include "report.hpp"
+#include "run.hpp"
+#include "text.hpp"
+
+#include <lightswitch/compare/verify.hpp>
+#include <lightswitch/film/file.hpp>
+#include <lightswitch/film/image_io.hpp>
+#include <lightswitch/scene/stock.hpp>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <glob.h>
+#include <iostream>
+#include <sstream>
+
+namespace lightswitch::program {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The files that a pattern such as 'mine/*.exr' names, in order.
+std::vector<std::string> expand(const std::vector<std::string>& patterns, std::string_view option) {
+    std::vector<std::string> files;
+    for (const std::string& pattern : patterns) {
+        glob_t found{};
+        const int status = glob(pattern.c_str(), 0, nullptr, &found);
+        for (std::size_t i = 0; status == 0 && i < found.gl_pathc; ++i) files.emplace_back(found.gl_pathv[i]);
+        globfree(&found);
+        if (status != 0) throw Error(fmt::format("{}: no file matches \"{}\"", option, pattern));
+    }
+    return files;
+}
+
+/// Independent renders of one scene. What makes them useless as such is an error that names the files.
+std::vector<Image> load_replicas(const std::vector<std::string>& patterns, std::string_view option) {
+    const std::vector<std::string> files = expand(patterns, option);
+    if (files.size() < 3)
+        throw Error(fmt::format("{}: {} file{} given; at least 3 independent renders (different seeds) are needed to know their "
+                                "noise, and 8 or more to see much", option, files.size(), files.size() == 1 ? " is" : "s are"));
+    std::vector<Image> images;
+    for (const std::string& file : files) {
+        images.push_back(load_image(file));
+        const Image& image = images.back();
+        for (int y = 0; y < image.height(); ++y)
+            for (int x = 0; x < image.width(); ++x)
+                if (!is_finite(image(x, y)))
+                    throw Error(fmt::format("{}: pixel ({}, {}) is not finite: nothing can be said of its mean", file, x, y));
+        for (std::size_t i = 0; i + 1 < images.size(); ++i) {
+            try {
+                refuse_unless_comparable(images[i], image);
+            } catch (const Error& error) {
+                throw Error(fmt::format("{} and {}: {}", files[i], file, error.what()));
+            }
+            if (images[i].pixels() == image.pixels())
+                throw Error(fmt::format("{} and {} are the same image: independent renders need different seeds", files[i], file));
+        }
+    }
+    return images;
+}
+
+AnyMethod find_method(const std::string& wanted, std::string_view option) {
+    if (std::find(known_methods.begin(), known_methods.end(), wanted) == known_methods.end())
+        throw Error(fmt::format("{}: there is no method \"{}\"{}; known are {}", option, wanted,
+                                suggestion(wanted, known_methods), list(known_methods)));
+    return method_by_name(wanted);
+}
+
+/// What stands on both sides, and what keeps it alive.
+struct Contest {
+    std::optional<LoadedScene> loaded;
+    std::string title;
+    std::vector<Estimator> methods;
+    std::optional<Estimator> reference;
+};
+
+bool has_dirac_lights(const SceneSummary& summary) { return summary.point_lights + summary.directional_lights > 0; }
+
+/// The methods that are asked for, or all that can be verified on the scene.
+std::vector<std::string> chosen_methods(const VerifyCommand& command, const SceneSummary& summary, const std::string& reference) {
+    if (!command.methods.empty()) return command.methods;
+    std::vector<std::string> names;
+    for_each_method([&](const auto& m) {
+        const bool blind = has_dirac_lights(summary) && !notes_on(m.name).sees_dirac_lights;
+        if (m.kind != Kind::heuristic && m.name != reference && !blind) names.emplace_back(m.name);
+    });
+    if (names.empty())  // then at least with itself, which tests its noise
+        names.push_back(reference);
+    return names;
+}
+
+void load(Contest& contest, const VerifyCommand& command, const std::optional<Size>& images) {
+    SceneOptions options = command.scene;
+    if (images) {
+        if (options.size && (options.size->width != images->width || options.size->height != images->height))
+            throw Error(fmt::format("--size {}x{}: the images have {}x{} pixels, and so must the reference", options.size->width,
+                                    options.size->height, images->width, images->height));
+        options.size = images;
+    } else if (!options.size) {
+        options.shrink_to = 128;  // tiles say as much; and the time goes into samples
+    }
+    contest.loaded.emplace(load_scene(options));
+}
+
+Contest make_contest(const VerifyCommand& command, const std::stop_token& stop) {
+    Contest contest;
+    std::optional<Size> size;
+    const bool from_files = !command.images.empty();
+    if (from_files) {
+        std::vector<Image> images = load_replicas(command.images, "--images");
+        size = {images[0].width(), images[0].height()};
+        contest.methods.push_back(given(std::move(images), command.images.front()));
+    }
+    if (!command.against.empty()) {
+        if (!from_files) throw Error("--against compares files: name the others with --images");
+        if (!command.scene.scene.empty() || !command.reference.empty())
+            throw Error("--against is the reference: leave out the scene and --reference");
+        contest.reference = given(load_replicas(command.against, "--against"), command.against.front());
+        contest.title = command.images.front() + " against " + command.against.front();
+        return contest;
+    }
+    if (command.scene.scene.empty())
+        throw Error(fmt::format("verify: name a scene (a file that ends in .xml, or one of {}), or files with --images and --against",
+                                list(stock::names)));
+    if (from_files && !command.methods.empty()) throw Error("--images are what is verified: leave out --methods");
+    load(contest, command, size);
+    const SceneSummary& summary = contest.loaded->summary;
+    contest.title = command.scene.scene;
+
+    std::string reference = command.reference;
+    if (reference.empty()) reference = has_dirac_lights(summary) ? PathTracerNee::name : PathTracer::name;
+    const PathLength length{.max_depth = command.max_depth.value_or(summary.max_depth.value_or(PathLength{}.max_depth)),
+                            .rr_depth = summary.rr_depth.value_or(PathLength{}.rr_depth)};
+    const auto add = [&](const std::string& wanted, std::string_view option) {
+        AnyMethod method = find_method(wanted, option);
+        set_path_length(method, length);
+        if (has_dirac_lights(summary) && !notes_on(wanted).sees_dirac_lights)
+            print_warning(fmt::format("the method {} cannot see the scene's point and directional lights, and will not agree", wanted));
+        const Settings settings{.threads = command.options.threads, .stop = stop};
+        return std::visit([&](const auto& m) { return make_estimator(contest.loaded->scene, m, settings); }, method);
+    };
+    contest.reference = add(reference, "--reference");
+    if (!from_files)
+        for (const std::string& wanted : chosen_methods(command, summary, reference)) contest.methods.push_back(add(wanted, "--methods"));
+    return contest;
+}
+
+Json intervals(const std::array<Interval, 3>& of) {
+    Json json = Json::array();
+    for (const Interval& interval : of) json.push_back({interval.low, interval.high});
+    return json;
+}
+
+Json part_json(const Verdict::Part& part) {
+    return {{"length", part.length},
+            {"and_longer", part.and_longer},
+            {"disagrees", part.disagrees},
+            {"p", part.p},
+            {"bias", part.bias},
+            {"bias_interval", intervals(part.interval)},
+            {"share", part.share},
+            {"worst",
+             {{"columns", {part.worst.x0, part.worst.x1}},
+              {"rows", {part.worst.y0, part.worst.y1}},
+              {"channel", detail::channel_names[static_cast<std::size_t>(part.worst_channel)]},
+              {"value", part.ours},
+              {"reference", part.theirs}}}};
+}
+
+Json verdict_json(const Verdict& v) {
+    Json parts = Json::array(), tiles = Json::array();
+    for (const Verdict::Part& part : v.parts) parts.push_back(part_json(part));
+    for (int y = 0; y < v.p_values.height(); ++y) {
+        Json row = Json::array();
+        for (int x = 0; x < v.p_values.width(); ++x) row.push_back(min_component(v.p_values(x, y)));
+        tiles.push_back(std::move(row));
+    }
+    return {{"method", v.method},
+            {"reference", v.reference},
+            {"verdict", name(v.answer)},
+            {"reason", v.reason},
+            {"first_wrong_length", v.first_wrong_length == 0 ? Json() : Json(v.first_wrong_length)},
+            {"correlated_pixels", v.correlated_pixels},
+            {"confidence", v.confidence},
+            {"tolerance", v.tolerance},
+            {"images", v.images},
+            {"reference_images", v.reference_images},
+            {"samples_per_pixel", v.samples},
+            {"reference_samples_per_pixel", v.reference_samples},
+            {"seconds", v.seconds},
+            {"reference_seconds", v.reference_seconds},
+            {"rare_events", v.events},
+            {"non_finite", v.non_finite},
+            {"parts", std::move(parts)},
+            {"p_values", std::move(tiles)}};
+}
+
+int status_of(const std::vector<Verdict>& verdicts) {
+    const auto any = [&](Verdict::Answer answer) {
+        return std::any_of(verdicts.begin(), verdicts.end(), [&](const Verdict& v) { return v.answer == answer; });
+    };
+    return any(Verdict::Answer::disagrees) ? Status::disagrees : any(Verdict::Answer::undecided) ? Status::undecided : success;
+}
+
+}  // namespace
+
+int verify(const VerifyCommand& command) {
+    for (const std::string& file : {command.report, command.json})
+        if (!file.empty() && file != "-") check_file_writable(file);
+    const Cancellation cancellation;
+    const Contest contest = make_contest(command, cancellation.token());
+
+    ProgressLine line(!command.quiet);
+    VerifyOptions options = command.options;
+    options.stop = cancellation.token();
+    options.observer = [&](const VerifyProgress& progress) {
+        line.update(progress.seconds, fmt::format("{:.0f} s of at most {:.0f} s: {}, {} images", progress.seconds, options.seconds,
+                                                  progress.method, progress.images));
+    };
+    const std::vector<Verdict> verdicts = Verification(*contest.reference, contest.methods, options).run();
+    line.clear();
+
+    std::ostringstream text;
+    for (const Verdict& v : verdicts) text << v;
+    if (!command.quiet) fmt::print(command.json == "-" ? stderr : stdout, "{}", text.str());
+    if (!command.json.empty()) {
+        Json json{{"scene", contest.title}, {"verdicts", Json::array()}};
+        for (const Verdict& v : verdicts) json["verdicts"].push_back(verdict_json(v));
+        const std::string dumped = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+        if (command.json == "-") fmt::print("{}", dumped);
+        else write_file_atomically(command.json, dumped);
+    }
+    const bool drawn = std::none_of(verdicts.begin(), verdicts.end(), [](const Verdict& v) { return v.image.empty() || v.reference_image.empty(); });
+    if (!command.report.empty() && drawn) save_report(command.report, verdict_report(contest.title, verdicts));
+    if (!cancellation.token().stop_requested()) return status_of(verdicts);
+    print_note("cancelled: the verdict is on the images so far");
+    return Status::cancelled;
+}
+
+}  // namespace lightswitch::program

@@ -1,0 +1,202 @@
+#pragma once
+
+// Lights with one mistake. A scene builds its lights itself; `Relit` is such a scene with the light members replaced.
+
+#include <lightswitch/core/table.hpp>
+#include <lightswitch/light/sphere_light.hpp>
+#include <lightswitch/light/triangle_light.hpp>
+
+#include <array>
+#include <utility>
+#include <vector>
+
+namespace lightswitch::test {
+
+enum class LightMistake {
+    none,
+    weighted_uniformly,  ///< chosen by power, but with the probability of a uniform choice
+    last_never_chosen,   ///< a uniform choice among one light less
+    // of triangles
+    area_density,               ///< taken for a density per solid angle
+    root_missing,               ///< in the map from the square to the triangle
+    emits_backwards,            ///< where a ray meets its back
+    samples_backwards,          ///< towards points behind it
+    emits_by_shading_normal,    ///< the side is told by the interpolated normal
+    density_by_shading_normal,  ///< the cosine of a light that is met is that of the interpolated normal
+    // of spheres
+    area_sample_cone_density,  ///< uniform on the sphere, with the density of uniform directions to it
+    cone_too_narrow,           ///< sampled and believed: a tenth less of the solid angle
+};
+
+/// `Base`, a scene with one kind of light, whose lights are chosen by power (or uniformly), with a mistake.
+template <class Base>
+class Relit : public Base {
+public:
+    Relit(Base scene, LightMistake mistake) : Base(std::move(scene)), mistake_(mistake) {
+        std::vector<double> weights;
+        for (std::size_t i = 0; i < this->light_count(); ++i)
+            weights.push_back(this->with_light(TypedIndex(0, i), [](const auto& light) { return light.power(); }));
+        if (mistake == LightMistake::last_never_chosen) {
+            weights.assign(weights.size(), 1);
+            weights.back() = 0;
+        }
+        choice_ = DiscreteDistribution(weights);
+    }
+
+    LightSample sample_light(const SurfacePoint& from, float choice, const Vec2& u) const {
+        const std::size_t number = choice_.sample(choice);
+        LightSample result =
+            this->with_light(TypedIndex(0, number), [&](const auto& light) { return sample(light, from, u); });
+        result.pdf = result.pdf * probability(number);
+        return result;
+    }
+
+    SolidAnglePdf light_pdf(const Vec3& from, const Vec3& wi, const SurfacePoint& hit) const {
+        return this->with_light(hit.light, [&](const auto& light) { return pdf(light, from, wi, hit); }) *
+               probability(hit.light.position());
+    }
+
+    Rgb emitted(const SurfacePoint& point, const Vec3& direction) const {
+        if (!point.light) return Rgb(0);
+        return this->with_light(point.light, [&](const auto& light) {
+            if (mistake_ == LightMistake::emits_backwards) return light.emission;
+            if (mistake_ == LightMistake::emits_by_shading_normal)
+                return dot(point.shading_normal, direction) > 0 ? light.emission : Rgb(0);
+            return light.emitted(point, direction);
+        });
+    }
+
+private:
+    float probability(std::size_t number) const {
+        if (mistake_ == LightMistake::weighted_uniformly || mistake_ == LightMistake::last_never_chosen)
+            return 1 / static_cast<float>(choice_.size());
+        return choice_.probability(number);
+    }
+
+    LightSample sample(const TriangleLight& light, const SurfacePoint& from, const Vec2& u) const {
+        Vec2 b = uniform_triangle(u);
+        if (mistake_ == LightMistake::root_missing) b = {1 - u.x, u.y * u.x};
+        const Vec3 position = light.corner + b.x * light.edge1 + b.y * light.edge2;
+        const Vec3 to_light = position - from.position;
+        const float distance2 = length_squared(to_light);
+        const Vec3 wi = to_light * (1 / std::sqrt(distance2));
+        float cosine = -dot(wi, light.normal);
+        if (mistake_ == LightMistake::samples_backwards) cosine = std::abs(cosine);
+        if (!(cosine > 0)) return {};
+        const SolidAnglePdf density = mistake_ == LightMistake::area_density
+                                          ? SolidAnglePdf{light.density.value}
+                                          : to_solid_angle(light.density, distance2, cosine);
+        return {.wi = wi,
+                .radiance = light.emission,
+                .pdf = density,
+                .dirac = false,
+                .visibility = from.segment_to(position, light.normal, light.offset)};
+    }
+
+    SolidAnglePdf pdf(const TriangleLight& light, const Vec3& from, const Vec3& wi, const SurfacePoint& hit) const {
+        if (mistake_ == LightMistake::area_density) return {light.density.value};
+        if (mistake_ == LightMistake::density_by_shading_normal)
+            return to_solid_angle(light.density, length_squared(hit.position - from),
+                                  std::abs(dot(wi, hit.shading_normal)));
+        return light.pdf(from, wi, hit);
+    }
+
+    LightSample sample(const SphereLight& light, const SurfacePoint& from, const Vec2& u) const {
+        if (mistake_ == LightMistake::cone_too_narrow) return narrowed(light).sample(from, u);
+        LightSample result = light.sample(from, u);
+        if (mistake_ == LightMistake::area_sample_cone_density && result.pdf.value > 0) {
+            const Vec3 normal = uniform_sphere(u);
+            const Vec3 position = light.center + light.radius * normal;
+            result.wi = normalize(position - from.position);
+            result.visibility = from.segment_to(light.center + (light.radius + light.offset) * normal);
+        }
+        return result;
+    }
+
+    SolidAnglePdf pdf(const SphereLight& light, const Vec3& from, const Vec3& wi, const SurfacePoint& hit) const {
+        return (mistake_ == LightMistake::cone_too_narrow ? narrowed(light) : light).pdf(from, wi, hit);
+    }
+
+    /// A smaller sphere, whose points stand off it so far that they are outside of the real one.
+    static SphereLight narrowed(const SphereLight& light) {
+        SphereLight narrow = light;
+        narrow.radius *= shrink;
+        narrow.offset += 2 * (light.radius - narrow.radius);
+        return narrow;
+    }
+    static constexpr float shrink = 0.9487f;  // the square root of 0.9
+
+    LightMistake mistake_;
+    DiscreteDistribution choice_;
+};
+
+/// A sky in rings and sectors of latitude and longitude around the y axis, bright towards the zenith and towards +x.
+class GradientSky {
+public:
+    explicit GradientSky(bool sine_missing) : sine_missing_(sine_missing) {
+        std::vector<double> weights;
+        for (int ring = 0; ring < rings; ++ring)
+            for (int sector = 0; sector < sectors; ++sector)
+                weights.push_back(double(cell(ring, sector)) * std::sin((ring + 0.5) * double(pi) / rings));
+        choice_ = DiscreteDistribution(weights);
+    }
+
+    Rgb radiance(const Vec3& wi) const {
+        const auto [ring, sector] = locate(wi);
+        return cell(ring, sector) * Rgb(0.6f, 0.8f, 1);
+    }
+
+    LightSample sample(const SurfacePoint& from, float choice, const Vec2& u) const {
+        const int number = static_cast<int>(choice_.sample(choice));
+        const float theta = pi * (static_cast<float>(number / sectors) + u.x) / rings;
+        const float phi = 2 * pi * (static_cast<float>(number % sectors) + u.y) / sectors;
+        const float sine = std::sin(theta);
+        const Vec3 wi(sine * std::cos(phi), std::cos(theta), sine * std::sin(phi));
+        return {.wi = wi, .radiance = radiance(wi), .pdf = pdf(wi), .dirac = false, .visibility = from.spawn(wi)};
+    }
+
+    SolidAnglePdf pdf(const Vec3& wi) const {
+        const auto [ring, sector] = locate(wi);
+        const float per_angles =
+            choice_.probability(static_cast<std::size_t>(ring * sectors + sector)) * (rings * sectors) / (2 * pi * pi);
+        return {sine_missing_ ? per_angles : per_angles / std::max(safe_sqrt(1 - wi.y * wi.y), 1e-6f)};
+    }
+
+private:
+    static constexpr int rings = 16, sectors = 8;
+
+    static float cell(int ring, int sector) {
+        const float height = 1 - (static_cast<float>(ring) + 0.5f) / rings;
+        return (0.2f + 1.8f * height * height) * (sector == 0 || sector == sectors - 1 ? 2.0f : 1.0f);
+    }
+
+    static std::pair<int, int> locate(const Vec3& wi) {
+        const float theta = std::acos(std::clamp(wi.y, -1.0f, 1.0f));
+        const float turns = std::atan2(wi.z, wi.x) * (0.5f * inv_pi);
+        return {std::min(static_cast<int>(theta * inv_pi * rings), rings - 1),
+                std::min(static_cast<int>((turns < 0 ? turns + 1 : turns) * sectors), sectors - 1)};
+    }
+
+    bool sine_missing_;
+    DiscreteDistribution choice_;
+};
+
+/// `Base`, a scene without lights, under a `GradientSky`.
+template <class Base>
+class UnderSky : public Base {
+public:
+    static constexpr bool has_environment = true;
+
+    UnderSky(Base scene, bool sine_missing) : Base(std::move(scene)), sky_(sine_missing) {}
+
+    Rgb environment(const Vec3& wi) const { return sky_.radiance(wi); }
+    SolidAnglePdf environment_pdf(const Vec3&, const Vec3& wi) const { return sky_.pdf(wi); }
+    LightSample sample_light(const SurfacePoint& from, float choice, const Vec2& u) const {
+        return sky_.sample(from, choice, u);
+    }
+
+private:
+    GradientSky sky_;
+};
+
+}  // namespace lightswitch::test
