@@ -25,6 +25,9 @@ run_samples() {
   run ../03_own_method
   run ../04_own_bsdf
   run ../05_comparison .
+  run ../06_verify
+  run ../lightswitch compare spheres.exr spheres-path.exr --report spheres.html
+  run ../lightswitch verify furnace --report furnace-verdict.html
 
   echo "samples: the pictures are in $PWD"
   return $status

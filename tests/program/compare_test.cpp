@@ -72,7 +72,10 @@ TEST_CASE("compare refuses what cannot be compared, and writes nothing") {
         {{"compare", "a.pfm", "a.pfm", "-o", "x.hdr"}, "no negative values"},
         {{"compare", "a.pfm", "a.pfm", "-o", "x.gif"}, "an image is one of"},
         {{"compare", "a.pfm", "a.pfm", "--scale", "0"}, "not a finite number above 0"},
-        {{"compare", "a.pfm", "a.pfm", "a.pfm"}, "there is no use for \"a.pfm\""}};
+        {{"compare", "--reference", "a.pfm"}, "compare: name an image"},
+        {{"compare", "a.pfm", "a.pfm", "b.pfm"}, "different size"},
+        {{"compare", "a.pfm", "--reference", "b.pfm"}, "different size"},
+        {{"compare", "a.pfm", "a.pfm", "--report", "nowhere/x.html"}, "nowhere"}};
     if (lightswitch::detail::has_exr) {
         for (const char* scene : {"furnace", "cornell-box"})
             CHECK(run(workspace, {"render", scene, "--size", "4x4", "--spp", "1", "-o", scene + std::string(".exr")})
@@ -89,4 +92,25 @@ TEST_CASE("compare refuses what cannot be compared, and writes nothing") {
         CHECK(ended.says(message));
         CHECK(workspace.files() == before);
     }
+}
+
+TEST_CASE("compare takes any number of images, and makes a page of them") {
+    const Workspace workspace;
+    lightswitch::save(workspace / "a.pfm", image(20, 10, 1));
+    lightswitch::save(workspace / "b.pfm", image(20, 10, 1.5f));
+    lightswitch::save(workspace / "c.pfm", image(20, 10, 2));
+    const Ended ended = run(workspace, {"compare", "a.pfm", "b.pfm", "--reference", "c.pfm", "--report", "r.html"});
+    CHECK(ended.err == "");
+    REQUIRE(ended.status == 0);
+    CHECK(ended.prints("A           a.pfm, 20 x 10 pixels\nB           c.pfm, the reference\n"));
+    CHECK(ended.prints("mean ratio  0.500000\n"));
+    CHECK(ended.prints("MAPE        0.49"));
+    CHECK(ended.prints("SMAPE       0.66"));
+    CHECK(ended.prints("A           b.pfm, 20 x 10 pixels\nB           c.pfm, the reference\n"));
+    CHECK(ended.prints("mean ratio  0.750000\n"));
+    const std::string page = read_text(workspace / "r.html");
+    CHECK(page.starts_with("<!DOCTYPE html>"));
+    for (const char* name : {"a.pfm", "b.pfm", "c.pfm", "relMSE", "HDR-FLIP"}) CHECK(page.find(name) != std::string::npos);
+    // Without --reference the last one is it.
+    CHECK(run(workspace, {"compare", "a.pfm", "b.pfm", "c.pfm"}).out == ended.out);
 }

@@ -22,7 +22,7 @@ struct Concrete : Abstract {
 struct Virtual {
     static constexpr std::string_view name = "virtual";
     static constexpr ls::Kind kind = ls::Kind::unbiased;
-    std::unique_ptr<Abstract> method;
+    std::shared_ptr<Abstract> method;
     ls::Rgb radiance(const ls::FullScene& scene, const ls::Ray& ray, ls::Sampler& sampler) const {
         return method->radiance(scene, ray, sampler);
     }
@@ -36,9 +36,9 @@ int main(int argc, char** argv) {
     const ls::FullScene scene = ls::build_scene<ls::AllBsdfs, ls::AllLights>(*ls::stock::describe(name));
     Virtual method;
     if (argc > 2)
-        method.method = std::make_unique<Concrete<ls::PathTracer>>();
+        method.method = std::make_shared<Concrete<ls::PathTracer>>();
     else
-        method.method = std::make_unique<Concrete<ls::PathTracerNee>>();
+        method.method = std::make_shared<Concrete<ls::PathTracerNee>>();
     sum = ls::render(scene, method, {.samples = 1}).mean().x;
 #else
     const ls::AnyScene scene = ls::build_any(*ls::stock::describe(name));

@@ -96,11 +96,11 @@ struct Estimate {
 
     /// What is known without noise.
     static Estimate exact(double value) { return {value, 0, std::numeric_limits<double>::infinity(), 0, 0}; }
-    /// Of independent values that have the same expectation. Of the third moment only what exceeds its standard error for normal values
-    /// counts: else the noise of a few values would look like skewness.
+    /// Of independent values that have the same expectation. Of the third moment only what exceeds two standard errors, as normal
+    /// values would have them, counts: else the noise of a few values would look like skewness.
     static Estimate of(const Moments& m) {
         const double n = static_cast<double>(m.count());
-        const double noise = std::sqrt(6 / n * m.variance()) * m.variance();
+        const double noise = 2 * std::sqrt(6 / n * m.variance()) * m.variance();
         const double third = std::copysign(std::max(0.0, std::abs(m.third()) - noise), m.third());
         return {m.mean(), m.variance() / n, n - 1, third / (n * n), 0};
     }

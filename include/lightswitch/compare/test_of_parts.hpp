@@ -46,8 +46,9 @@ public:
     std::vector<Verdict::Part> parts;
     Image p_values;
     double events = std::numeric_limits<double>::infinity();
-    /// The smallest `VerifyOptions::tolerance` that all intervals of the first three tile sizes keep within.
-    double needed_tolerance = 0;
+    /// The smallest `VerifyOptions::tolerance` that all intervals of the first three tile sizes keep within; and what it would be if
+    /// nothing rare could be missing.
+    double needed_tolerance = 0, plain_tolerance = 0;
 
 private:
     friend class ShrinkingBound;
@@ -78,7 +79,7 @@ private:
                     part.theirs = b[t][c].mean;
                 }
             if (l == 0) measure_bias(part, a[0], b[0]);
-            if (i == 0 && l < 3) measure_need(a, b);
+            if (i == 0 && l < 3) measure_need(l, a, b);
         }
         parts.push_back(part);
     }
@@ -96,14 +97,20 @@ private:
         }
     }
 
-    void measure_need(const auto& a, const auto& b) {
+    void measure_need(std::size_t l, const auto& a, const auto& b) {
         const auto scale = theirs_.scale();
         const double tiles = double(a.size());
         for (std::size_t t = 0; t < a.size(); ++t)
             for (std::size_t c = 0; c < 3; ++c) {
-                const Interval interval = welch_interval(a[t][c], b[t][c], level_ / (3 * tiles));
-                needed_tolerance =
-                    std::max(needed_tolerance, std::max(interval.high, -interval.low) / (scale[c] * std::sqrt(tiles)));
+                Estimate ours = a[t][c], theirs = b[t][c];
+                if (l > 0) ours.unseen = theirs.unseen = 0;  // what may be missing of the whole bounds it for the tiles
+                const auto need = [&] {
+                    const Interval interval = welch_interval(ours, theirs, level_ / (3 * tiles));
+                    return std::max(interval.high, -interval.low) / (scale[c] * std::sqrt(tiles));
+                };
+                needed_tolerance = std::max(needed_tolerance, need());
+                ours.third = theirs.third = ours.unseen = theirs.unseen = 0;
+                plain_tolerance = std::max(plain_tolerance, need());
             }
     }
 

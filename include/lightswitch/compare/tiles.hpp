@@ -106,11 +106,12 @@ public:
             double pooled_variance = 0, pooled_third = 0, thirds = 0, cubes = 0;
             for (const auto& tile : tiles) {
                 pooled_variance += tile[c].variance() / double(tiles.size());
-                pooled_third += std::max(0.0, tile[c].third()) / double(tiles.size());
+                pooled_third += std::max(0.0, Estimate::of(tile[c]).third) * n * n / double(tiles.size());
                 thirds += tile[c].third();
                 cubes += std::pow(tile[c].variance(), 1.5);
             }
-            const double usual_skewness = cubes > 0 ? thirds / cubes : 0;
+            // Of few tiles it would be noise.
+            const double usual_skewness = tiles.size() >= 16 && cubes > 0 ? thirds / cubes : 0;
             const std::vector<double> from_finest = third_from_finest(level, c);
             for (std::size_t t = 0; t < tiles.size(); ++t) {
                 Estimate& e = result[t][c] = Estimate::of(tiles[t][c]);

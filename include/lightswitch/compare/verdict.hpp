@@ -57,7 +57,7 @@ struct Verdict {
     double found_after = 0;  ///< seconds from the beginning of the run until a difference was found; 0 when there is none
     std::uint64_t images = 0, reference_images = 0;         ///< independent ones
     std::uint64_t samples = 0, reference_samples = 0;       ///< per pixel, in all
-    double events = 0;  ///< effective number of events that the image's mean rests on, for the method that has fewer
+    double events = 0;  ///< effective number of events that the image's mean rests on, of the side that has fewer
     std::uint64_t non_finite = 0;  ///< contributions that were replaced by black
 
     Image image, reference_image;  ///< means of all images

@@ -77,7 +77,7 @@ decltype(auto) as_image_method(const M& method) {
 }  // namespace detail
 
 /// A render that can be continued: what it has accumulated is a pure function of (scene, method, seed, sampling, number of
-/// iterations), whatever the threads and however often it was stopped in between. Scene and method must outlive it.
+/// iterations), whatever the threads and however often it was stopped in between. The scene must outlive it.
 template <class SceneType, class M, Executor E = TbbExecutor>
 class Session {
 public:
