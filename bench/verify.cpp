@@ -2,7 +2,7 @@
 //
 //   verify bugs [SECONDS]     every planted bug: seconds until it is found, and whether the path length is right (120 s at most each)
 //   verify alarms [RUNS]      right methods against right ones with different seeds: how often they are said to differ
-//   verify agree [SECONDS] [SCENE...]   unbiased methods on the stock scenes and on scene files: what bias is ruled out
+//   verify agree [SECONDS] [SCENE...]   unbiased methods on the stock scenes or on scene files: whether a bias of 2 % is ruled out
 //
 // Without arguments: bugs, 1000 runs for alarms, agree. Seconds are those of all processors together with whatever else they do.
 
@@ -53,28 +53,31 @@ int alarms(int runs) {
     const auto pairs = ls::test::correct_pairs();
     std::vector<std::pair<ls::Estimator, ls::Estimator>> sides;
     for (const auto& pair : pairs) sides.push_back(pair.make());
-    std::vector<int> at_999(pairs.size(), 0), at_90(pairs.size(), 0), made(pairs.size(), 0);
-    int total = 0;
+    std::vector<int> alarms(pairs.size(), 0), made(pairs.size(), 0), lax_alarms(pairs.size(), 0), lax_made(pairs.size(), 0);
     for (int run = 0; run < runs; ++run) {
         const std::size_t i = static_cast<std::size_t>(run) % pairs.size();
-        ls::VerifyOptions options{.seconds = 0, .tolerance = 0, .seed = 1 + static_cast<std::uint64_t>(run), .images = 81, .samples = 1};
+        ls::VerifyOptions options{.seconds = 0, .tolerance = 0, .seed = 1 + static_cast<std::uint64_t>(run), .images = 54, .samples = 1};
         const ls::Verdict v = ls::verify(sides[i].first, sides[i].second, options);
-        options.confidence = 0.9;
-        const ls::Verdict lax = ls::verify(sides[i].first, sides[i].second, options);
         ++made[i];
-        at_999[i] += v.disagrees();
-        at_90[i] += lax.disagrees();
-        total += v.disagrees();
+        alarms[i] += v.disagrees();
         if (v.disagrees()) std::cout << pairs[i].name << ", seed " << options.seed << ": " << v;
+        if (run / static_cast<int>(pairs.size()) % 4 != 0) continue;
+        options.confidence = 0.9;  // a rate that so many runs can show
+        ++lax_made[i];
+        lax_alarms[i] += ls::verify(sides[i].first, sides[i].second, options).disagrees();
     }
-    std::printf("%-40s %6s %16s %16s\n", "right against right, 81 images", "runs", "alarms at 99.9 %", "alarms at 90 %");
-    int lax = 0;
+    std::printf("%-40s %6s %16s %6s %14s\n", "right against right, 54 images", "runs", "alarms at 99.9 %", "runs", "alarms at 90 %");
+    int all = 0, lax = 0, lax_runs = 0;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-        std::printf("%-40s %6d %16d %16d\n", std::string(pairs[i].name).c_str(), made[i], at_999[i], at_90[i]);
-        lax += at_90[i];
+        const std::string name = std::string(pairs[i].name) + ", " + std::string(pairs[i].scene);
+        std::printf("%-40.40s %6d %16d %6d %14d\n", name.c_str(), made[i], alarms[i], lax_made[i], lax_alarms[i]);
+        all += alarms[i];
+        lax += lax_alarms[i];
+        lax_runs += lax_made[i];
     }
-    std::printf("%-40s %6d %16d %16d   (stated: at most %.1f and %.1f)\n\n", "all", runs, total, lax, 1e-3 * runs, 0.1 * runs);
-    return std::max(0, total - static_cast<int>(1e-3 * runs));
+    std::printf("%-40s %6d %16d %6d %14d   (stated: at most %.1f and %.1f)\n\n", "all", runs, all, lax_runs, lax, 1e-3 * runs,
+                0.1 * lax_runs);
+    return std::max(0, all - static_cast<int>(1e-3 * runs));
 }
 
 ls::LibraryDescription describe(const std::string& scene) {
@@ -91,7 +94,7 @@ int agree(double seconds, const std::vector<std::string>& scenes) {
     int wrong = 0;
     for (const std::string& name : scenes) {
         auto description = describe(name);
-        description.film.width = description.film.height = 128;
+        description.film.width = description.film.height = 64;
         const ls::AnyScene scene = ls::build_any(description);
         const auto verdicts = std::visit(
             [&](const auto& s) {
@@ -99,7 +102,7 @@ int agree(double seconds, const std::vector<std::string>& scenes) {
                 ls::for_each_method([&](const auto& m) {
                     if (m.kind != ls::Kind::heuristic && m.name != ls::PathTracer::name) methods.push_back(ls::estimator(s, m));
                 });
-                return ls::Verification(ls::estimator(s, ls::PathTracer{}), methods, {.seconds = seconds}).run();
+                return ls::Verification(ls::estimator(s, ls::PathTracer{}), methods, {.seconds = seconds, .tolerance = 0.02}).run();
             },
             scene);
         for (const ls::Verdict& v : verdicts) {

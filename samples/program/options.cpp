@@ -233,14 +233,14 @@ void add_verify(CLI::App& app, VerifyCommand& command) {
     add_value(
         app, "--seconds", "S",
         [&](const std::string& text) { command.options.seconds = parse_number_option("--seconds", text, 0, true); },
-        "of rendering at most, in all (default: 60). It ends as soon as\nevery question is decided");
+        "of rendering, in all, but at least three images of each\n(default: 60). It ends as soon as every question is decided");
     add_value(
         app, "--confidence", "C",
         [&](const std::string& text) {
             command.options.confidence = parse_number_option("--confidence", text, 0, true);
             if (command.options.confidence >= 1) throw Error("--confidence: it must be below 1, such as 0.999");
         },
-        "a right method is called wrong with a probability of at most\n1 - C (default: 0.999)");
+        "a right method is called wrong with a probability of at most\n1 - C (default: 0.999); of files, if none of their samples is much\nbrighter than what they show");
     add_value(
         app, "--tolerance", "T",
         [&](const std::string& text) { command.options.tolerance = parse_number_option("--tolerance", text, 0, false); },
@@ -275,9 +275,9 @@ void add_verify(CLI::App& app, VerifyCommand& command) {
         "Renders independent images by each method and compares them with the reference's by Welch's t-test: all\n"
         "tiles from the whole image down to a few pixels, all path lengths together and one by one. Scenes are\n"
         "rendered with at most 128 pixels a side, unless --size says more: tiles need no more.\n\n"
-        "Verdicts: agrees (a bias beyond the tolerance is ruled out), disagrees (the expected images differ; where,\n"
-        "by how much, and from which path length on), undecided (more time is needed, or the image rests on so few\n"
-        "rare bright paths that nothing can be said).\n\n"
+        "Verdicts: agrees (a bias beyond the tolerance is ruled out), disagrees (the expected images differ: where,\n"
+        "by how much, and from which path length on; or values are not finite; or pixels share random numbers),\n"
+        "undecided (more time is needed, or the image rests on so few rare bright paths that nothing can be said).\n\n"
         "Exit status: 0 all agree, 1 one disagrees, 3 undecided, 2 an error of which one line on standard error\n"
         "tells, 130 cancelled.\n\n"
         "Examples:\n"

@@ -23,8 +23,9 @@ std::string bias_with_interval(const Image& image, const Image& reference) {
         for (std::size_t i = 0; i < image.pixels().size(); ++i)
             differences.add(double(image.pixels()[i][c]) - double(reference.pixels()[i][c]));
         const Interval interval = welch_interval(Estimate::of(differences), Estimate::exact(0), 0.01);
-        text += (c > 0 ? ", " : "") +
-                percent_interval(differences.mean() / mean[c], {interval.low / mean[c], interval.high / mean[c]});
+        text += c > 0 ? ", " : "";
+        text += mean[c] > 0 ? percent_interval(differences.mean() / mean[c], {interval.low / mean[c], interval.high / mean[c]})
+                            : fmt::format("{:+.3g} of black", differences.mean());
     }
     return text;
 }
@@ -93,8 +94,9 @@ ReportTable parts_table(const Verdict& v) {
         table.rows.push_back({name(part), part.disagrees ? "disagrees" : "no difference found",
                               percent_interval(part.bias[0], part.interval[0]), percent_interval(part.bias[1], part.interval[1]),
                               percent_interval(part.bias[2], part.interval[2]), number(part.p),
-                              fmt::format("columns {} to {}, rows {} to {}", part.worst.x0, part.worst.x1 - 1, part.worst.y0,
-                                          part.worst.y1 - 1)});
+                              part.p > 0.05 ? std::string()
+                                            : fmt::format("columns {} to {}, rows {} to {}", part.worst.x0, part.worst.x1 - 1,
+                                                          part.worst.y0, part.worst.y1 - 1)});
     return table;
 }
 
@@ -102,11 +104,11 @@ ReportTable parts_table(const Verdict& v) {
 
 Report comparison_report(const std::vector<NamedImage>& images, std::size_t reference) {
     Report report{.title = "Comparison with " + images[reference].name};
-    ReportCurve curve{.name = "images", .points = {}};
+    ReportCurve curve{.name = "images, root of relMSE", .points = {}};
     for (std::size_t i = 0; i < images.size(); ++i) {
         report.images.push_back({.name = images[i].name, .image = images[i].image});
         if (i != reference && samples_of(images[i].image) > 0)
-            curve.points.push_back({.samples = samples_of(images[i].image), .error = relmse(images[i].image, images[reference].image)});
+            curve.points.push_back({.samples = samples_of(images[i].image), .error = std::sqrt(relmse(images[i].image, images[reference].image))});
     }
     report.reference = reference;
     if (curve.points.size() > 1) {
@@ -142,7 +144,7 @@ Report verdict_report(const std::string& scene, const std::vector<Verdict>& verd
                                    .scale = 10,
                                    .legend = "-log10 of the smallest p-value of the tile's channels"});
         }
-        ReportCurve curve{.name = v.method, .points = {}};
+        ReportCurve curve{.name = v.method + ", root of relMSE", .points = {}};
         for (const Verdict::Moment& m : v.curve) curve.points.push_back({m.seconds, double(m.samples), m.error});
         report.curves.push_back(std::move(curve));
     }

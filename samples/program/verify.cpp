@@ -28,11 +28,18 @@ using Json = nlohmann::ordered_json;
 std::vector<std::string> expand(const std::vector<std::string>& patterns, std::string_view option) {
     std::vector<std::string> files;
     for (const std::string& pattern : patterns) {
+        std::error_code ignored;
+        if (std::filesystem::exists(pattern, ignored)) {
+            files.push_back(pattern);
+            continue;
+        }
         glob_t found{};
         const int status = glob(pattern.c_str(), 0, nullptr, &found);
         for (std::size_t i = 0; status == 0 && i < found.gl_pathc; ++i) files.emplace_back(found.gl_pathv[i]);
         globfree(&found);
-        if (status != 0) throw Error(fmt::format("{}: no file matches \"{}\"", option, pattern));
+        const bool scene = pattern.ends_with(".xml") || std::find(stock::names.begin(), stock::names.end(), pattern) != stock::names.end();
+        if (status != 0)
+            throw Error(fmt::format("{}: no file matches \"{}\"{}", option, pattern, scene ? "; name the scene before the files" : ""));
     }
     return files;
 }
@@ -64,10 +71,16 @@ std::vector<Image> load_replicas(const std::vector<std::string>& patterns, std::
     return images;
 }
 
+/// What a set of files is called.
+std::string title_of(const std::vector<std::string>& patterns) {
+    return patterns.size() == 1 ? patterns[0] : fmt::format("{} and {} more", patterns[0], patterns.size() - 1);
+}
+
 AnyMethod find_method(const std::string& wanted, std::string_view option) {
     if (std::find(known_methods.begin(), known_methods.end(), wanted) == known_methods.end())
-        throw Error(fmt::format("{}: there is no method \"{}\"{}; known are {}", option, wanted,
-                                suggestion(wanted, known_methods), list(known_methods)));
+        throw Error(fmt::format("{}: there is no method \"{}\"{}; known are {}{}", option, wanted,
+                                suggestion(wanted, known_methods), list(known_methods),
+                                wanted.find('.') != std::string::npos ? "; files are named with --images and --against" : ""));
     return method_by_name(wanted);
 }
 
@@ -111,23 +124,31 @@ Contest make_contest(const VerifyCommand& command, const std::stop_token& stop) 
     Contest contest;
     std::optional<Size> size;
     const bool from_files = !command.images.empty();
+    std::vector<Image> images;
     if (from_files) {
-        std::vector<Image> images = load_replicas(command.images, "--images");
+        images = load_replicas(command.images, "--images");
         size = {images[0].width(), images[0].height()};
-        contest.methods.push_back(given(std::move(images), command.images.front()));
+        if (!command.methods.empty()) throw Error("--images are what is verified: leave out --methods");
+        contest.methods.push_back(given(images, title_of(command.images)));
     }
     if (!command.against.empty()) {
         if (!from_files) throw Error("--against compares files: name the others with --images");
         if (!command.scene.scene.empty() || !command.reference.empty())
             throw Error("--against is the reference: leave out the scene and --reference");
-        contest.reference = given(load_replicas(command.against, "--against"), command.against.front());
-        contest.title = command.images.front() + " against " + command.against.front();
+        std::vector<Image> others = load_replicas(command.against, "--against");
+        for (const Image& image : images)
+            for (const Image& other : others) {
+                refuse_unless_comparable(image, other);
+                if (image.pixels() == other.pixels())
+                    throw Error("--images and --against share an image: both sides must be independent");
+            }
+        contest.reference = given(std::move(others), title_of(command.against));
+        contest.title = title_of(command.images) + " against " + title_of(command.against);
         return contest;
     }
     if (command.scene.scene.empty())
         throw Error(fmt::format("verify: name a scene (a file that ends in .xml, or one of {}), or files with --images and --against",
                                 list(stock::names)));
-    if (from_files && !command.methods.empty()) throw Error("--images are what is verified: leave out --methods");
     load(contest, command, size);
     const SceneSummary& summary = contest.loaded->summary;
     contest.title = command.scene.scene;
@@ -145,6 +166,11 @@ Contest make_contest(const VerifyCommand& command, const std::stop_token& stop) 
         return std::visit([&](const auto& m) { return make_estimator(contest.loaded->scene, m, settings); }, method);
     };
     contest.reference = add(reference, "--reference");
+    if (from_files) {  // the lamps are known, and perhaps how many samples their light is averaged over
+        const auto samples = images[0].metadata.find("samples");
+        const float count = samples == images[0].metadata.end() ? 0 : std::strtof(samples->second.c_str(), nullptr);
+        if (count >= 1) contest.methods[0].brightest = contest.reference->brightest / count;
+    }
     if (!from_files)
         for (const std::string& wanted : chosen_methods(command, summary, reference)) contest.methods.push_back(add(wanted, "--methods"));
     return contest;
@@ -196,6 +222,7 @@ Json verdict_json(const Verdict& v) {
             {"reference_seconds", v.reference_seconds},
             {"rare_events", v.events},
             {"non_finite", v.non_finite},
+            {"reference_non_finite", v.reference_non_finite},
             {"parts", std::move(parts)},
             {"p_values", std::move(tiles)}};
 }
@@ -212,6 +239,8 @@ int status_of(const std::vector<Verdict>& verdicts) {
 int verify(const VerifyCommand& command) {
     for (const std::string& file : {command.report, command.json})
         if (!file.empty() && file != "-") check_file_writable(file);
+    if (!command.report.empty() && command.report == command.json)
+        throw Error("--report and --json name the same file, " + command.json);
     const Cancellation cancellation;
     const Contest contest = make_contest(command, cancellation.token());
 
@@ -238,7 +267,7 @@ int verify(const VerifyCommand& command) {
     const bool drawn = std::none_of(verdicts.begin(), verdicts.end(), [](const Verdict& v) { return v.image.empty() || v.reference_image.empty(); });
     if (!command.report.empty() && drawn) save_report(command.report, verdict_report(contest.title, verdicts));
     if (!cancellation.token().stop_requested()) return status_of(verdicts);
-    print_note("cancelled: the verdict is on the images so far");
+    print_note(drawn ? "cancelled: the verdict is on the images so far" : "cancelled before there was an image: no report is written");
     return Status::cancelled;
 }
 

@@ -113,6 +113,11 @@ TEST_CASE("verify: what it cannot do is an error that says what to do, and nothi
         {{"verify", "furnace", "--images", "a-*.pfm", "--size", "8x8"}, "--size 8x8: the images have 24x16 pixels"},
         {{"verify", "furnace", "--against", "a-*.pfm"}, "name the others with --images"},
         {{"verify", "furnace", "--images", "a-*.pfm", "--against", "a-*.pfm"}, "leave out the scene"},
+        {{"verify", "--images", "a-*.pfm", "furnace"}, "name the scene before the files"},
+        {{"verify", "--images", "a-*.pfm", "--against", "a-*.pfm"}, "share an image"},
+        {{"verify", "--images", "a-*.pfm", "--against", "a-*.pfm", "--methods", "path"}, "leave out --methods"},
+        {{"verify", "furnace", "--reference", "a-1.pfm"}, "files are named with --images and --against"},
+        {{"verify", "furnace", "--report", "x", "--json", "x"}, "name the same file"},
         {{"verify", "furnace", "--report", "nowhere/x.html"}, "nowhere"},
         {{"verify", "none.xml"}, "none.xml"}};
     for (const auto& [arguments, message] : calls) {

@@ -42,6 +42,16 @@ struct NotFinite {
     }
 };
 
+/// Right, but its depth counts bounces.
+struct CountsBounces {
+    static constexpr std::string_view name = "counts-bounces";
+    static constexpr Kind kind = Kind::unbiased;
+    int max_depth = -1;
+    Rgb radiance(const auto& scene, const Ray& ray, auto& sampler) const {
+        return PathTracer{.max_depth = max_depth < 0 ? -1 : max_depth + 1}.radiance(scene, ray, sampler);
+    }
+};
+
 std::string message_of(const auto& call) {
     try {
         call();
@@ -170,6 +180,41 @@ TEST_CASE("contributions that are not finite are no agreement") {
     const Verdict verdict = verify(scene, NotFinite{}, PathTracerNee{}, limited(16, 1));
     CHECK(verdict.disagrees());
     CHECK(verdict.non_finite > 0);
+    // The reference's are not the method's fault, and nothing can be said.
+    const Verdict other = verify(scene, PathTracerNee{}, NotFinite{}, {.seconds = 0, .tolerance = 0.5, .images = 16, .samples = 1});
+    CHECK(!other.agrees());
+    CHECK(other.reference_non_finite > 0);
+    if (!other.disagrees()) CHECK(other.reason.find("of the reference") != std::string::npos);
+}
+
+// A path tracer that has not met the bulb yet must not be thought to be without it. False alarm: 1e-3 per seed.
+TEST_CASE("a small bulb beside a large lamp is no difference") {
+    LibraryDescription description = stock::describe_cornell_box();
+    description.film.width = description.film.height = 16;
+    auto bulb = description.shapes[5];
+    for (DVec3& p : std::get<Mesh>(bulb.geometry).positions) p = {0.01 * p.x + 0.5, p.y - 0.3, 0.01 * p.z};
+    bulb.emission = Rgb(5e4f);
+    description.shapes.push_back(bulb);
+    const auto scene = build_scene<DiffuseBsdfs, Lights<TriangleLight>>(description);
+    for (std::uint64_t seed = 0; seed < 6; ++seed) {
+        VerifyOptions options = limited(36, 1);
+        options.seed = seed;
+        const Verdict verdict = verify(scene, PathTracerNee{}, PathTracer{}, options);
+        CHECK_MESSAGE(verdict.answer == Verdict::Answer::undecided, verdict);
+    }
+}
+
+TEST_CASE("without a tolerance, too little is known to agree") {
+    const auto scene = stock::cornell_box();
+    const Verdict verdict = verify(scene, PathTracerNee{}, PathTracer{}, {.seconds = 0, .tolerance = 0, .images = 4, .samples = 1});
+    CHECK(verdict.answer == Verdict::Answer::undecided);
+}
+
+TEST_CASE("depths that are counted otherwise are named as a possible cause") {
+    const Verdict verdict = verify(stock::furnace(), CountsBounces{}, PathTracer{}, limited(24, 1));
+    CHECK(verdict.disagrees());
+    CHECK(verdict.first_wrong_length == 1);
+    CHECK_MESSAGE(verdict.reason.find("PathLength") != std::string::npos, verdict);
 }
 
 // False alarm of the first: 1e-3.
@@ -200,6 +245,14 @@ TEST_CASE("what cannot be compared is refused, in words") {
     auto unequal = noise(4, 8, 8, 1, 1);
     unequal[1] = Image(8, 9);
     CHECK(message_of([&] { verify(given(unequal, "x"), given(noise(4, 8, 8, 1, 2), "y")); }).find("the images of x differ in size") == 0);
+    Estimator files = given(noise(4, 8, 8, 1, 1), "files");
+    files.kind = Kind::consistent;
+    CHECK(message_of([&] { verify(files, given(noise(4, 8, 8, 1, 2), "y")); }).find("files is consistent") == 0);
+    auto other = noise(4, 8, 8, 1, 1);
+    other[0].metadata["scene"] = "one";
+    auto others = noise(4, 8, 8, 1, 2);
+    others[0].metadata["scene"] = "two";
+    CHECK(message_of([&] { verify(given(other, "x"), given(others, "y")); }).find("images with a different scene") == 0);
     CHECK(message_of([] { given({}, "none"); }) == "none: there are no images");
     CHECK(message_of([&] { verify(scene, PathTracer{}, PathTracer{}, {.confidence = 1}); }).find("the confidence") == 0);
     CHECK(message_of([&] { verify(scene, PathTracer{}, PathTracer{}, {.tolerance = -1}); }).find("the tolerance") == 0);

@@ -34,12 +34,14 @@ struct Estimator {
     bool independent_pixels = false;     ///< pixels share no random numbers: true of pixel methods
     bool exact = false;                  ///< has no noise: one image is all there is to know
     std::uint64_t available = 0;         ///< number of images that there are; 0: as many as one asks for
-    /// The largest radiance that a path can meet by chance; 0 when it is not known. What was not seen yet may be as bright.
-    double brightest = 0;
+    /// The largest radiance that a path can meet by chance, per channel and for one sample per pixel; 0 when it is not known. What was
+    /// not seen yet may be as bright.
+    Rgb brightest{0};
     std::function<Image(const Request&)> render;
 };
 
-/// The method on the scene. Refers to `scene` and copies `method`. Depths can be limited when the method has a member `max_depth`.
+/// The method on the scene. Refers to `scene` and copies `method`. A member `max_depth` of the method is taken to be the longest path as in
+/// `PathLength`: 1 is emission seen directly, 2 adds direct light, -1 is unlimited.
 template <class SceneType, class M>
 Estimator estimator(const SceneType& scene, const M& method, const Settings& settings = {}) {
     constexpr bool limits_depth = requires(M m) { m.max_depth = 1; };
@@ -51,7 +53,7 @@ Estimator estimator(const SceneType& scene, const M& method, const Settings& set
     if constexpr (limits_depth) result.max_depth = method.max_depth;
     for (const Emitter& emitter : scene.emitters())
         if (emitter.kind == Emitter::Kind::surface || emitter.kind == Emitter::Kind::environment)
-            result.brightest = std::max(result.brightest, static_cast<double>(max_component(emitter.strength)));
+            result.brightest = glm::max(result.brightest, emitter.strength);
     result.render = [&scene, method, settings](const Estimator::Request& request) {
         M limited = method;
         if constexpr (limits_depth)
@@ -64,6 +66,11 @@ Estimator estimator(const SceneType& scene, const M& method, const Settings& set
     };
     return result;
 }
+
+/// The scene would be gone before the estimator is used.
+template <class SceneType, class M>
+    requires requires { typename SceneType::Data; }
+Estimator estimator(const SceneType&& scene, const M& method, const Settings& settings = {}) = delete;
 
 /// The same for a scene that nobody else keeps.
 template <class SceneType, class M>
@@ -79,7 +86,8 @@ inline Estimator given(std::vector<Image> images, std::string name) {
     Estimator result;
     result.name = std::move(name);
     result.available = images.size();
-    result.render = [images = std::move(images)](const Estimator::Request& request) { return images[request.index]; };
+    result.render = [all = std::make_shared<const std::vector<Image>>(std::move(images))](
+                        const Estimator::Request& request) { return all->at(request.index); };
     return result;
 }
 
@@ -89,7 +97,7 @@ inline Estimator exactly(Image image, std::string name = "exact") {
     result.name = std::move(name);
     result.exact = true;
     result.available = 1;
-    result.render = [image = std::move(image)](const Estimator::Request&) { return image; };
+    result.render = [one = std::make_shared<const Image>(std::move(image))](const Estimator::Request&) { return *one; };
     return result;
 }
 

@@ -7,6 +7,7 @@
 #include <lightswitch/compare/tiles.hpp>
 
 #include <chrono>
+#include <cstdlib>
 #include <optional>
 
 namespace lightswitch::detail {
@@ -42,44 +43,60 @@ public:
 
     std::vector<std::array<Estimate, 3>> estimates(std::size_t part, std::size_t level) const {
         auto result = parts_[part].estimates(level);
-        const double event = brightest_event();
+        const DVec3 event = brightest_event();
         for (std::size_t t = 0; t < result.size(); ++t) {
             const PixelRectangle r = layout().tile(level, t);
             const double samples = double(r.x1 - r.x0) * double(r.y1 - r.y0) * double(count());
-            for (Estimate& e : result[t]) {
+            for (std::size_t c = 0; c < 3; ++c) {
+                Estimate& e = result[t][c];
                 if (exact()) e = Estimate::exact(e.mean);
-                else e.unseen = event / samples;
+                else e.unseen = event[int(c)] / samples;
             }
         }
         return result;
     }
 
-    /// The mean of the images.
+    /// The mean of the images, with what they say of scene and camera.
     Image image() const {
         Image result(layout().width(), layout().height());
+        result.metadata = metadata_;
         for (std::size_t i = 0; i < sum_.size(); ++i) result.pixels()[i] = Rgb(sum_[i] / double(count()));
         return result;
     }
 
-    /// What a bias is a fraction of: the mean of the whole image per channel, but at least a tenth of the mean of all channels.
+    /// What a bias is a fraction of: the mean of the whole image per channel, but at least a tenth of the mean of all channels; 1 for
+    /// a black image, where the bias is then in units of radiance.
     std::array<double, 3> scale() const {
         DVec3 mean(0);
         for (const DVec3& s : sum_) mean += s / (double(count()) * double(sum_.size()));
-        const double least = std::max(0.1 * (mean.x + mean.y + mean.z) / 3, std::numeric_limits<double>::min());
+        mean = glm::abs(mean);
+        const double least = 0.1 * (mean.x + mean.y + mean.z) / 3;
+        if (!(least > 0)) return {1, 1, 1};
         return {std::max(mean.x, least), std::max(mean.y, least), std::max(mean.z, least)};
     }
 
     /// Samples per pixel of the images to come.
     void set_samples(int iterations) { iterations_ = iterations; }
-    /// Chooses them so that an image takes about that many seconds, by images that are thrown away.
-    void choose_samples(double seconds, const std::stop_token& stop) {
+    /// Chooses them so that an image takes about that many seconds, by images that are thrown away; those of one sample are kept. Where
+    /// one takes more than `too_long`, path lengths are not told apart.
+    void choose_samples(double seconds, double too_long, const std::stop_token& stop) {
         constexpr int most = 1024;
         iterations_ = 1;
         while (iterations_ < most && !stop.stop_requested()) {
             const auto begin = Clock::now();
-            render_all(~drawn_ - static_cast<std::uint64_t>(iterations_), stop);
+            std::vector<Image> images = render_all(~std::uint64_t{0} - static_cast<std::uint64_t>(iterations_), stop);
             const double taken = std::chrono::duration<double>(Clock::now() - begin).count();
-            if (2 * taken > seconds) break;
+            if (2 * taken > seconds) {
+                if (iterations_ > 1 || stop.stop_requested()) return;
+                if (taken > too_long) {
+                    lengths_ = 0;
+                    parts_.resize(1);
+                    images.erase(images.begin(), images.end() - 1);
+                }
+                add(images);
+                seconds_ += taken;
+                return;
+            }
             iterations_ *= 2;
         }
     }
@@ -89,6 +106,8 @@ public:
         for (TileMoments& part : parts_) part = TileMoments();
         sum_.clear();
         previous_.reset();
+        drawn_ = 0;
+        seed_ = mix64(seed_);
     }
 
     /// Adds up to `wanted` images, as many as are worth making at a time; false when the run was stopped meanwhile. Small images are
@@ -126,15 +145,17 @@ public:
 
 private:
     /// By how much one sample that is brighter than usual may raise a pixel of one image, as far as one can know: by what was seen anywhere
-    /// in the images, or by the brightest lamp, but at most by four times what was seen. Lamps in view do not count where
-    /// paths are taken apart: they are not rare.
-    double brightest_event() const {
-        double seen = 0;
+    /// in the images, or by the brightest lamp; where no lamp is known, by four times what was seen. Lamps in view do not
+    /// count where paths are taken apart: they are not rare.
+    const DVec3& brightest_event() const {
+        if (event_at_ == count()) return event_;
+        event_at_ = count();
+        DVec3 seen(0);
         for (std::size_t i = 0; i < largest_.size(); ++i)
-            seen = std::max(seen, double(largest_[i]) - average_[i] / double(count()));
-        const double lamp = estimator_.brightest / double(iterations_);
-        if (seen == 0) return lamp;
-        return lamp > 0 ? std::clamp(lamp, seen, 4 * seen) : 4 * seen;
+            seen = glm::max(seen, DVec3(largest_[i]) - average_[i] / double(count()));
+        const DVec3 lamp = DVec3(estimator_.brightest) / double(iterations_);
+        for (int c = 0; c < 3; ++c) event_[c] = lamp[c] > 0 ? std::max(lamp[c], seen[c]) : 4 * seen[c];
+        return event_;
     }
 
     using Clock = std::chrono::steady_clock;
@@ -155,19 +176,20 @@ private:
         const Image& all = images.back();
         if (sum_.empty()) {
             sum_.resize(all.pixels().size(), DVec3(0));
-            largest_.assign(sum_.size(), 0.0f);
-            average_.assign(sum_.size(), 0.0);
+            largest_.assign(sum_.size(), Rgb(0));
+            average_.assign(sum_.size(), DVec3(0));
+            for (const char* key : {"scene", "camera", "size"})
+                if (const auto found = all.metadata.find(key); found != all.metadata.end()) metadata_.insert(*found);
             for (TileMoments& part : parts_) part = TileMoments(TileLayout(all.width(), all.height()));
         }
         refuse(all);
         for (std::size_t i = 0; i < sum_.size(); ++i) sum_[i] += DVec3(all.pixels()[i]);
         if (const auto found = all.metadata.find("non_finite"); found != all.metadata.end())
-            non_finite_ += std::stoull(found->second);
+            non_finite_ += std::strtoull(found->second.c_str(), nullptr, 10);
         for (std::size_t i = 0; i < sum_.size(); ++i) {
             const Rgb indirect = lengths_ > 0 ? all.pixels()[i] - images[0].pixels()[i] : all.pixels()[i];
-            const float value = max_component(indirect);
-            largest_[i] = count() == 0 ? value : std::max(largest_[i], value);
-            average_[i] += double(value);
+            largest_[i] = count() == 0 ? indirect : glm::max(largest_[i], indirect);
+            average_[i] += DVec3(indirect);
         }
         parts_[0].add(all);
         for (std::size_t d = 0; d < images.size() && images.size() > 1; ++d)
@@ -225,8 +247,11 @@ private:
     double seconds_ = 0;
     std::vector<TileMoments> parts_;
     std::vector<DVec3> sum_;
-    std::vector<float> largest_;    // of each pixel's brightest channel, without the paths of length 1 where they are known
-    std::vector<double> average_;   // sum of the same
+    std::vector<Rgb> largest_;    // of each pixel, without the paths of length 1 where they are known
+    std::vector<DVec3> average_;  // sum of the same
+    mutable DVec3 event_{0};      // `brightest_event` of so many images
+    mutable std::uint64_t event_at_ = 0;
+    Image::Metadata metadata_;
     std::optional<Image> previous_;  // waits for the other one of its pair
     Moments near_, far_;             // of the pixels of one small tile, and of the whole image
 };

@@ -132,6 +132,31 @@ inline double shortfall_rate(double z, double skew) {
     return (z * skew - std::log1p(z * skew)) / (skew * skew);
 }
 
+/// log of the normal probability beyond |z| on either side, for z from 0 to far beyond what a double can hold.
+inline double log_normal_p(double z) {
+    if (z < 25) return std::log(std::erfc(z / std::sqrt(2.0)));
+    return -0.5 * z * z - std::log(z * std::sqrt(0.5 * 3.14159265358979)) - 1 / (z * z);
+}
+
+/// log of the p-value z of which is corrected for skewness.
+inline double log_corrected_p(double z, double skew) {
+    return log_normal_p(z) + 0.5 * z * z - shortfall_rate(z, skew);
+}
+
+/// The normal number as improbable as Student's t, and back; in proportion where that is less than any double.
+inline double normal_from_student(double t, double freedom) {
+    constexpr double least = 1e-300, infinite = std::numeric_limits<double>::infinity();
+    if (std::isinf(freedom)) return t;
+    if (const double p = student_p(t, freedom); p > least) return student_quantile(p, infinite);
+    return t * student_quantile(least, infinite) / student_quantile(least, freedom);
+}
+inline double student_from_normal(double z, double freedom) {
+    constexpr double least = 1e-300, infinite = std::numeric_limits<double>::infinity();
+    if (std::isinf(freedom)) return z;
+    if (const double log_p = log_normal_p(z); log_p > std::log(least)) return student_quantile(std::exp(log_p), freedom);
+    return z * student_quantile(least, freedom) / student_quantile(least, infinite);
+}
+
 /// Skewness of the difference a - b on the side that makes it seem too small: `a` missed rare large values, or `b` rare
 /// negative ones.
 inline double missing_skew(const Estimate& a, const Estimate& b) {
@@ -152,10 +177,10 @@ inline double welch_p(const Estimate& a, const Estimate& b, double allowed = 0) 
     const bool a_is_less = difference.mean < 0;
     const double unseen = a_is_less ? a.unseen : b.unseen, none_happened = unseen > 0 ? std::exp(-beyond / unseen) : 0;
     if (!(difference.variance > 0)) return none_happened;
-    double p = std::max(student_p(beyond / std::sqrt(difference.variance), difference.freedom), 1e-300);
+    const double t = beyond / std::sqrt(difference.variance);
+    double p = std::max(student_p(t, difference.freedom), 1e-300);
     if (const double skew = a_is_less ? detail::missing_skew(a, b) : detail::missing_skew(b, a); skew > 0 && p < 0.05) {
-        const double z = student_quantile(p, std::numeric_limits<double>::infinity());
-        p *= std::exp(0.5 * z * z - detail::shortfall_rate(z, skew));
+        p = std::exp(detail::log_corrected_p(detail::normal_from_student(t, difference.freedom), skew));
     }
     return std::min(1.0, std::max(p, none_happened));
 }
@@ -171,15 +196,14 @@ inline Interval welch_interval(const Estimate& a, const Estimate& b, double p) {
     const Estimate difference = a - b;
     const double sigma = std::sqrt(difference.variance);
     const auto reach = [&](double skew, double unseen) {
-        // The plain p-value that the correction turns into `p`.
-        double plain = p;
-        if (skew > 0) {
-            const double z = detail::solve_falling(p, [skew](double x) {
-                return std::erfc(x / std::sqrt(2.0)) * std::exp(0.5 * x * x - detail::shortfall_rate(x, skew));
-            });
-            plain = std::erfc(z / std::sqrt(2.0));
+        double sigmas = 0;
+        if (sigma > 0 && skew > 0) {
+            const double z =
+                detail::solve_falling(std::log(p), [skew](double x) { return detail::log_corrected_p(x, skew); });
+            sigmas = detail::student_from_normal(z, difference.freedom);
+        } else if (sigma > 0) {
+            sigmas = student_quantile(p, difference.freedom);
         }
-        const double sigmas = sigma > 0 ? student_quantile(plain, difference.freedom) : 0;
         return std::max(sigmas * sigma, -std::log(p) * unseen);
     };
     // The true difference is larger than it seems when `a` fell short.

@@ -64,23 +64,29 @@ private:
             const double tests = 3 * double(layout.tiles(l)) * double(layout.levels());
             const bool finest = i == 0 && l + 1 == layout.levels();
             if (finest) p_values = Image(layout.columns(l), layout.rows(l));
+            double largest = 0;  // of the significant differences on this level
             for (std::size_t t = 0; t < a.size(); ++t)
                 for (std::size_t c = 0; c < 3; ++c) {
                     const double slack = rounding * (std::abs(a[t][c].mean) + std::abs(b[t][c].mean));
                     const double p = welch_p(a[t][c], b[t][c], slack + (bound_ ? bound_->allowed(i, l, t, c) : 0));
                     if (finest) p_values.pixels()[t][static_cast<int>(c)] = static_cast<float>(p);
-                    part.disagrees = part.disagrees || p * tests < level;
-                    if (p * tests >= worst) continue;
-                    worst = p * tests;
-                    part.p = std::min(1.0, worst);
-                    part.worst = layout.tile(l, t);
-                    part.worst_channel = static_cast<int>(c);
-                    part.ours = a[t][c].mean;
-                    part.theirs = b[t][c].mean;
+                    // The place is the largest difference on the finest level that shows one; or else the most improbable.
+                    const double off = std::abs(a[t][c].mean - b[t][c].mean);
+                    const bool significant = p * tests < level;
+                    if (significant ? off > largest : !part.disagrees && p * tests < worst) {
+                        part.worst = layout.tile(l, t);
+                        part.worst_channel = static_cast<int>(c);
+                        part.ours = a[t][c].mean;
+                        part.theirs = b[t][c].mean;
+                    }
+                    if (significant) largest = std::max(largest, off);
+                    part.disagrees = part.disagrees || significant;
+                    worst = std::min(worst, p * tests);
                 }
             if (l == 0) measure_bias(part, a[0], b[0]);
             if (i == 0 && l < 3) measure_need(l, a, b);
         }
+        part.p = std::min(1.0, worst);
         parts.push_back(part);
     }
 
@@ -105,7 +111,7 @@ private:
                 Estimate ours = a[t][c], theirs = b[t][c];
                 if (l > 0) ours.unseen = theirs.unseen = 0;  // what may be missing of the whole bounds it for the tiles
                 const auto need = [&] {
-                    const Interval interval = welch_interval(ours, theirs, level_ / (3 * tiles));
+                    const Interval interval = welch_interval(ours, theirs, level_ / (3 * 3 * tiles));
                     return std::max(interval.high, -interval.low) / (scale[c] * std::sqrt(tiles));
                 };
                 needed_tolerance = std::max(needed_tolerance, need());

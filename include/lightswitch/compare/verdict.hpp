@@ -19,7 +19,7 @@ namespace lightswitch {
 struct Verdict {
     enum class Answer {
         agrees,     ///< no difference was found, and one as large as the tolerance would have been
-        disagrees,  ///< the expected images differ
+        disagrees,  ///< the expected images differ, or contributions are not finite, or pixels share random numbers
         undecided,  ///< too few samples, or too few of the rare bright paths, to tell
     };
 
@@ -32,7 +32,8 @@ struct Verdict {
         PixelRectangle worst;   ///< where that is
         int worst_channel = 0;  ///< 0 red, 1 green, 2 blue
         double ours = 0, theirs = 0;  ///< radiance there
-        /// Whole-image mean less the reference's, per channel, as a fraction of the reference's whole image (all lengths).
+        /// Whole-image mean less the reference's, per channel, as a fraction of the reference's whole image (all lengths); in
+        /// units of radiance where the reference is black.
         std::array<double, 3> bias{};
         std::array<Interval, 3> interval{};  ///< of the bias, valid whenever the run was stopped
         std::array<double, 3> share{};       ///< of the reference's whole image that these paths carry
@@ -42,7 +43,7 @@ struct Verdict {
     struct Moment {
         double seconds = 0;           ///< spent on this method
         std::uint64_t samples = 0;    ///< per pixel
-        double error = 0;             ///< relMSE to the reference's final image
+        double error = 0;             ///< root of the relMSE to the reference's final image, whose own noise is part of it
     };
 
     std::string method, reference;
@@ -56,9 +57,9 @@ struct Verdict {
     double seconds = 0, reference_seconds = 0;              ///< spent rendering
     double found_after = 0;  ///< seconds from the beginning of the run until a difference was found; 0 when there is none
     std::uint64_t images = 0, reference_images = 0;         ///< independent ones
-    std::uint64_t samples = 0, reference_samples = 0;       ///< per pixel, in all
+    std::uint64_t samples = 0, reference_samples = 0;       ///< per pixel, in all; of a consistent method in the last look
     double events = 0;  ///< effective number of events that the image's mean rests on, of the side that has fewer
-    std::uint64_t non_finite = 0;  ///< contributions that were replaced by black
+    std::uint64_t non_finite = 0, reference_non_finite = 0;  ///< contributions that were replaced by black
 
     Image image, reference_image;  ///< means of all images
     Image p_values;                ///< of the smallest tiles, all lengths: one pixel per tile, one channel per channel

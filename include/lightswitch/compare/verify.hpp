@@ -18,10 +18,13 @@ struct VerifyProgress {
 
 /// How `verify` works; the defaults are right for most uses.
 struct VerifyOptions {
-    double seconds = 20;        ///< of rendering at most, in all; it ends as soon as every question is decided
-    double confidence = 0.999;  ///< a method that agrees is said to disagree with a probability of at most 1 - confidence
+    double seconds = 20;  ///< of rendering, in all, but at least three images of each; it ends as soon as every question is decided
+    /// A method that agrees is said to disagree with a probability of at most 1 - confidence, if no lamp, or no sample of an image without
+    /// a scene, is much brighter than what is known of (see `Estimator::brightest`).
+    double confidence = 0.999;
     /// The smallest bias of the whole image that matters, as a fraction: it agrees when a larger one is ruled out. A tile that is one
-    /// of n may be off by sqrt(n) times as much, because its mean is as much noisier. 0: use all the time to look for any difference.
+    /// of n may be off by sqrt(n) times as much, because its mean is as much noisier. 0: use all the time to look for any difference,
+    /// and hold it to 0.01 at the end.
     double tolerance = 0.01;
     int path_lengths = 5;       ///< compared one by one; 0: only all together
     std::uint64_t seed = 0;
@@ -42,6 +45,7 @@ struct VerifyOptions {
 ///   that few of them give "undecided" and not a false alarm.
 /// - Sequential: looks are taken at 16, 24, 36, ... images. The k-th may use up 1 / (k (k + 1)) of the rate of false alarms; these
 ///   sum to 1, so the rate holds over the whole run, however it ends. `TestOfParts` says how it is shared within a look.
+///   Files, which are as many as they are, are looked at once, when the other side's noise is small beside theirs.
 /// - A consistent method is rendered with twice the samples at every look, and its bias must fall: see `ShrinkingBound`.
 /// - Pixels whose errors are correlated although the method renders them one by one are found, too.
 class Verification {
@@ -59,6 +63,8 @@ public:
             if (method.kind == Kind::heuristic)
                 throw Error(method.name + " is heuristic: it makes a picture of the scene, not of its light transport, and has "
                                           "no expected image that it could share with " + reference.name);
+            if (method.kind == Kind::consistent && method.available > 0)
+                throw Error(method.name + " is consistent: images of one number of samples do not show whether its bias shrinks");
             subjects_.emplace_back(method, options, subjects_.size() + 1);
         }
         if (subjects_.empty()) throw Error("there is no method to verify");
@@ -88,6 +94,7 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
     static constexpr std::uint64_t first_look = 16;
+    static constexpr double usual_tolerance = 0.01;
     static constexpr std::size_t most_snapshot_pixels = std::size_t{1} << 24;  // 200 MB; of larger images the latest are kept
     static constexpr double seconds_per_image = 0.02;  // short enough to find what is plain to see within a second
 
@@ -104,6 +111,7 @@ private:
         std::uint64_t alarm_at = 0;  // number of images when a difference was first found
         std::vector<bool> alarms;    // by part
         std::vector<Image> snapshots;
+        bool where_is_known = false;  // the lengths before the first wrong one are known to be right
         double needed_tolerance = std::numeric_limits<double>::infinity();
         bool rare = false;  // what may be missing counts for more than the noise
     };
@@ -125,7 +133,12 @@ private:
     void prepare(detail::Replicas& r) {
         if (options_.samples > 0) r.set_samples(options_.samples);
         else if (r.estimator().available == 0)
-            r.choose_samples(seconds_per_image, options_.stop);
+            r.choose_samples(seconds_per_image, too_long(), options_.stop);
+    }
+
+    /// An image with all its parts is to be rendered ten times at least.
+    double too_long() const {
+        return options_.seconds > 0 ? options_.seconds / (10 * double(subjects_.size() + 1)) : std::numeric_limits<double>::infinity();
     }
 
     void draw(detail::Replicas& r, std::uint64_t wanted) {
@@ -140,40 +153,55 @@ private:
         }
     }
 
+    static bool is_fixed(const detail::Replicas& r) { return r.estimator().available > 0 && !r.exact(); }
+
+    /// Whether this is the time for the only look at a fixed number of images: the other side adds little to their noise.
+    bool worth_the_only_look(const detail::Replicas& a, const detail::Replicas& b) const {
+        const auto noise = [](const detail::Replicas& r) { return r.estimates(0, 0)[0][1].variance; };
+        return (is_fixed(a) || noise(a) <= 0.05 * noise(b)) && (is_fixed(b) || noise(b) <= 0.05 * noise(a)) &&
+               a.count() >= (is_fixed(a) ? most(a) : first_look) && b.count() >= (is_fixed(b) ? most(b) : first_look);
+    }
+
     void judge(Subject& s, int look, bool last) {
+        Verdict& v = s.verdict;
         if (!reference_.usable() || !s.replicas.usable()) return;
+        if (s.bound && s.replicas.count() < first_look && !v.parts.empty()) return;  // the look before says more
         refuse_unless_comparable(s.replicas.image(), reference_.image());
-        const double alpha = 1 - options_.confidence;
-        // Where both sides have a fixed number of images, there is one look.
-        const bool only = look == 1 && last && reference_.estimator().available > 0 && s.replicas.estimator().available > 0;
-        const double level = only ? alpha : alpha / (look * (look + 1.0));
+        const bool only = is_fixed(s.replicas) || is_fixed(reference_);
+        if (only && !last && !worth_the_only_look(s.replicas, reference_)) return;
+        const double alpha = 1 - options_.confidence, level = only ? alpha : alpha / (look * (look + 1.0));
         const detail::TestOfParts test(s.replicas, reference_, 0.95 * level, s.bound ? &*s.bound : nullptr);
 
-        Verdict& v = s.verdict;
         v.parts = test.parts;
         v.p_values = test.p_values;
         v.events = test.events;
+        v.images = s.replicas.count();
+        v.samples = s.replicas.samples_drawn();
+        v.image = s.replicas.image();
         s.needed_tolerance = test.needed_tolerance;
         s.rare = test.needed_tolerance > 1.5 * test.plain_tolerance;
         s.alarms.resize(v.parts.size(), false);
         for (std::size_t i = 0; i < s.alarms.size(); ++i)
             v.parts[i].disagrees = s.alarms[i] = s.alarms[i] || v.parts[i].disagrees;
         v.correlated_pixels = v.correlated_pixels || s.replicas.pixel_correlation_p() < 0.05 * level;
-        v.curve.push_back({s.replicas.seconds(), s.replicas.samples_drawn(), 0});
-        s.snapshots.push_back(s.replicas.image());
-        while (s.snapshots.size() * s.snapshots.back().pixels().size() > most_snapshot_pixels) s.snapshots.erase(s.snapshots.begin());
+        v.curve.push_back({s.replicas.seconds(), v.samples, 0});
+        s.snapshots.push_back(v.image);
+        while (s.snapshots.size() > 1 && s.snapshots.size() * v.image.pixels().size() > most_snapshot_pixels)
+            s.snapshots.erase(s.snapshots.begin());
 
-        if (v.correlated_pixels || std::find(s.alarms.begin(), s.alarms.end(), true) != s.alarms.end()) {
+        const bool biased = std::find(s.alarms.begin(), s.alarms.end(), true) != s.alarms.end();
+        if (biased || v.correlated_pixels) {
             // The length at which it begins may take longer to see than the whole.
             if (s.alarm_at == 0) {
                 s.alarm_at = s.replicas.count();
                 v.found_after = elapsed();
             }
-            const bool biased = std::find(s.alarms.begin(), s.alarms.end(), true) != s.alarms.end();
-            s.decided = s.bound || localised(v) || s.replicas.count() >= (biased ? 16 : 2) * s.alarm_at;
+            s.where_is_known = localised(v);
+            s.decided = s.bound || s.where_is_known || s.replicas.count() >= (biased ? 16 : 2) * s.alarm_at;
         } else {
             s.decided = options_.tolerance > 0 && s.needed_tolerance <= options_.tolerance;
         }
+        s.decided = s.decided || only;
         if (s.bound && !s.decided && !last) {
             s.bound->learn(test);
             s.replicas.restart_with_twice_the_samples();
@@ -209,15 +237,18 @@ private:
         v.tolerance = options_.tolerance;
         v.seconds = s.replicas.seconds();
         v.reference_seconds = reference_.seconds();
-        v.images = s.replicas.count();
         v.reference_images = reference_.count();
-        v.samples = s.replicas.samples_drawn();
         v.reference_samples = reference_.samples_drawn();
-        v.non_finite = s.replicas.non_finite() + reference_.non_finite();
-        if (v.images > 0) v.image = s.replicas.image();
+        v.non_finite = s.replicas.non_finite();
+        v.reference_non_finite = reference_.non_finite();
+        if (v.parts.empty()) {
+            v.images = s.replicas.count();
+            v.samples = s.replicas.samples_drawn();
+            if (v.images > 0) v.image = s.replicas.image();
+        }
         if (v.reference_images > 0) v.reference_image = reference_.image();
         v.curve.erase(v.curve.begin(), v.curve.end() - std::ptrdiff_t(s.snapshots.size()));
-        for (std::size_t i = 0; i < s.snapshots.size(); ++i) v.curve[i].error = relmse(s.snapshots[i], v.reference_image);
+        for (std::size_t i = 0; i < s.snapshots.size(); ++i) v.curve[i].error = std::sqrt(relmse(s.snapshots[i], v.reference_image));
         answer(s);
         return v;
     }
@@ -225,31 +256,51 @@ private:
     void answer(Subject& s) {
         using Answer = Verdict::Answer;
         Verdict& v = s.verdict;
-        const bool alarm = std::any_of(v.parts.begin(), v.parts.end(), [](const auto& p) { return p.disagrees; });
-        if (alarm && !s.bound) v.first_wrong_length = first_wrong_length(v);
-        const std::string sure = detail::format("%.6g %%", 100 * v.confidence);
+        const auto any = [&](auto property) { return std::any_of(v.parts.begin(), v.parts.end(), property); };
+        const bool alarm = any([](const auto& part) { return part.disagrees; });
+        const bool lasts = any([](const auto& part) { return part.disagrees && part.p < 0.01; });
+        const double tolerance = options_.tolerance > 0 ? options_.tolerance : usual_tolerance;
         if (v.parts.empty()) {
             v.reason = "There are too few images to compare: at least 3 of each are needed.";
+        } else if (alarm && !lasts) {
+            v.reason = "A difference that was found after " + std::to_string(s.alarm_at) + " images did not last: rare bright paths?";
         } else if (alarm) {
             v.answer = Answer::disagrees;
-            if (s.bound) v.reason = "Its bias does not shrink as the samples grow.";
-            else if (v.first_wrong_length > 0)
-                v.reason = "The expected images differ from path length " + std::to_string(v.first_wrong_length) + " on.";
-            else v.reason = "The expected images differ.";
+            if (!s.bound) v.first_wrong_length = first_wrong_length(v);
+            v.reason = disagreement(s);
+        } else if (v.non_finite > 0) {
+            v.answer = Answer::disagrees;
+            v.reason = std::to_string(v.non_finite) + " of its contributions were not finite and are missing from the images.";
         } else if (v.correlated_pixels) {
             v.answer = Answer::disagrees;
             v.reason = "No bias was found, but pixels share random numbers: their errors move together.";
-        } else if (v.non_finite > 0) {
-            v.answer = Answer::disagrees;
-            v.reason = std::to_string(v.non_finite) + " contributions were not finite and are missing from the images.";
-        } else if (s.needed_tolerance <= (options_.tolerance > 0 ? options_.tolerance : std::numeric_limits<double>::max())) {
+        } else if (v.reference_non_finite > 0) {
+            v.reason = std::to_string(v.reference_non_finite) +
+                       " contributions of the reference were not finite and are missing from it: nothing can be said.";
+        } else if (s.needed_tolerance <= tolerance) {
             v.answer = Answer::agrees;
-            v.reason = detail::format("A bias of more than %.3g %% is ruled out, with a confidence of ",
-                                      100 * std::max(s.needed_tolerance, 1e-5)) + sure + ".";
+            v.reason = detail::format("A bias of more than %.3g %% is ruled out, with a confidence of %.6g %%.",
+                                      100 * std::max(s.needed_tolerance, 1e-5), 100 * v.confidence);
         } else {
-            v.reason = detail::format("A bias of up to %.3g %% would not have been seen: ", 100 * s.needed_tolerance);
-            v.reason += s.rare ? "the images rest on few rare bright paths." : "more time is needed.";
+            v.reason = s.needed_tolerance < 1 ? detail::format("A bias of %.3g %% cannot be ruled out: ", 100 * s.needed_tolerance)
+                                              : std::string("Nothing can be said yet of a bias below 100 %: ");
+            const bool fixed = is_fixed(s.replicas) || is_fixed(reference_);
+            v.reason += s.rare    ? "the images rest on few rare bright paths."
+                        : s.bound ? "whether it shrinks takes more time."
+                        : fixed   ? "more images are needed."
+                                  : "more time is needed.";
         }
+    }
+
+    std::string disagreement(const Subject& s) const {
+        const Verdict& v = s.verdict;
+        if (s.bound) return "Its bias does not shrink as the samples grow.";
+        if (v.first_wrong_length == 0) return "The expected images differ.";
+        std::string text = "The expected images differ from path length " + std::to_string(v.first_wrong_length) + " on";
+        text += s.where_is_known ? "." : " at the latest.";
+        if (!v.parts.front().disagrees && v.parts.front().p > 0.5)
+            text += " All lengths together show no difference: errors may cancel, or max_depth may not mean what `PathLength` says.";
+        return text;
     }
 
     VerifyOptions options_;
@@ -267,7 +318,7 @@ inline Verdict verify(const Estimator& method, const Estimator& reference, const
 /// Whether `method` has the same expected image of `scene` as `reference`: the test of a method of one's own, in one line.
 /// Throws `Error` for heuristic methods.
 template <class SceneType, class M, class R>
-    requires NamedMethod<M> && NamedMethod<R>
+    requires NamedMethod<M> && NamedMethod<R> && (!std::same_as<M, Estimator>)
 Verdict verify(const SceneType& scene, const M& method, const R& reference, const VerifyOptions& options = {}) {
     const Settings settings{.threads = options.threads};
     return verify(estimator(scene, method, settings), estimator(scene, reference, settings), options);
