@@ -26,7 +26,8 @@ namespace ls = lightswitch;
 
 /// Returns the number of bugs that were missed or found at the wrong path length.
 int bugs(double seconds, const std::string& only) {
-    std::printf("%-44s %-26s %9s %9s %8s %7s %7s\n", "planted bug", "scene", "found", "seconds", "samples", "length", "should");
+    std::printf("%-44s %-26s %9s %9s %8s %7s %7s\n", "planted bug", "scene", "found", "seconds", "samples", "length",
+                "should");
     int count = 0, found = 0, soon = 0, located = 0, with_length = 0;
     for (const auto& bug : ls::test::planted_bugs()) {
         if (!only.empty() && bug.name.find(only) == std::string_view::npos) continue;
@@ -38,13 +39,14 @@ int bugs(double seconds, const std::string& only) {
         soon += good && v.found_after <= 10;
         with_length += bug.first_length > 0;
         located += bug.first_length > 0 && v.first_wrong_length == bug.first_length;
-        std::printf("%-44s %-26s %9s %9.2f %8llu %7d %7d%s\n", std::string(bug.name).c_str(), std::string(bug.scene).c_str(),
-                    good ? "yes" : "NO", v.found_after, static_cast<unsigned long long>(v.samples), v.first_wrong_length,
-                    bug.first_length, v.first_wrong_length == bug.first_length ? "" : "  <- other length");
+        std::printf("%-44s %-26s %9s %9.2f %8llu %7d %7d%s\n", std::string(bug.name).c_str(),
+                    std::string(bug.scene).c_str(), good ? "yes" : "NO", v.found_after,
+                    static_cast<unsigned long long>(v.samples), v.first_wrong_length, bug.first_length,
+                    v.first_wrong_length == bug.first_length ? "" : "  <- other length");
         std::fflush(stdout);
     }
-    std::printf("%d bugs: %d found, %d of them within 10 s; path length right for %d of %d\n\n", count, found, soon, located,
-                with_length);
+    std::printf("%d bugs: %d found, %d of them within 10 s; path length right for %d of %d\n\n", count, found, soon,
+                located, with_length);
     return count - found + with_length - located;
 }
 
@@ -53,10 +55,12 @@ int alarms(int runs) {
     const auto pairs = ls::test::correct_pairs();
     std::vector<std::pair<ls::Estimator, ls::Estimator>> sides;
     for (const auto& pair : pairs) sides.push_back(pair.make());
-    std::vector<int> alarms(pairs.size(), 0), made(pairs.size(), 0), lax_alarms(pairs.size(), 0), lax_made(pairs.size(), 0);
+    std::vector<int> alarms(pairs.size(), 0), made(pairs.size(), 0), lax_alarms(pairs.size(), 0),
+        lax_made(pairs.size(), 0);
     for (int run = 0; run < runs; ++run) {
         const std::size_t i = static_cast<std::size_t>(run) % pairs.size();
-        ls::VerifyOptions options{.seconds = 0, .tolerance = 0, .seed = 1 + static_cast<std::uint64_t>(run), .images = 54, .samples = 1};
+        ls::VerifyOptions options{
+            .seconds = 0, .tolerance = 0, .seed = 1 + static_cast<std::uint64_t>(run), .images = 54, .samples = 1};
         const ls::Verdict v = ls::verify(sides[i].first, sides[i].second, options);
         ++made[i];
         alarms[i] += v.disagrees();
@@ -66,7 +70,8 @@ int alarms(int runs) {
         ++lax_made[i];
         lax_alarms[i] += ls::verify(sides[i].first, sides[i].second, options).disagrees();
     }
-    std::printf("%-40s %6s %16s %6s %14s\n", "right against right, 54 images", "runs", "alarms at 99.9 %", "runs", "alarms at 90 %");
+    std::printf("%-40s %6s %16s %6s %14s\n", "right against right, 54 images", "runs", "alarms at 99.9 %", "runs",
+                "alarms at 90 %");
     int all = 0, lax = 0, lax_runs = 0;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         const std::string name = std::string(pairs[i].name) + ", " + std::string(pairs[i].scene);
@@ -75,8 +80,8 @@ int alarms(int runs) {
         lax += lax_alarms[i];
         lax_runs += lax_made[i];
     }
-    std::printf("%-40s %6d %16d %6d %14d   (stated: at most %.1f and %.1f)\n\n", "all", runs, all, lax_runs, lax, 1e-3 * runs,
-                0.1 * lax_runs);
+    std::printf("%-40s %6d %16d %6d %14d   (stated: at most %.1f and %.1f)\n\n", "all", runs, all, lax_runs, lax,
+                1e-3 * runs, 0.1 * lax_runs);
     return std::max(0, all - static_cast<int>(1e-3 * runs));
 }
 
@@ -90,7 +95,8 @@ ls::LibraryDescription describe(const std::string& scene) {
 
 /// Returns the number of disagreements.
 int agree(double seconds, const std::vector<std::string>& scenes) {
-    std::printf("%-28s %-12s %-12s %9s %12s %8s %8s %9s\n", "scene", "method", "reference", "seconds", "verdict", "bias %", "within", "rare");
+    std::printf("%-28s %-12s %-12s %9s %12s %8s %8s %9s\n", "scene", "method", "reference", "seconds", "verdict",
+                "bias %", "within", "rare");
     int wrong = 0;
     for (const std::string& name : scenes) {
         auto description = describe(name);
@@ -100,9 +106,12 @@ int agree(double seconds, const std::vector<std::string>& scenes) {
             [&](const auto& s) {
                 std::vector<ls::Estimator> methods;
                 ls::for_each_method([&](const auto& m) {
-                    if (m.kind != ls::Kind::heuristic && m.name != ls::PathTracer::name) methods.push_back(ls::estimator(s, m));
+                    if (m.kind != ls::Kind::heuristic && m.name != ls::PathTracer::name)
+                        methods.push_back(ls::estimator(s, m));
                 });
-                return ls::Verification(ls::estimator(s, ls::PathTracer{}), methods, {.seconds = seconds, .tolerance = 0.02}).run();
+                return ls::Verification(ls::estimator(s, ls::PathTracer{}), methods,
+                                        {.seconds = seconds, .tolerance = 0.02})
+                    .run();
             },
             scene);
         for (const ls::Verdict& v : verdicts) {
@@ -110,10 +119,11 @@ int agree(double seconds, const std::vector<std::string>& scenes) {
             for (const double b : v.parts.front().bias)
                 if (std::abs(b) > std::abs(bias)) bias = b;
             double within = 0;
-            for (const auto& interval : v.parts.front().interval) within = std::max({within, interval.high, -interval.low});
-            std::printf("%-28s %-12s %-12s %9.1f %12s %8.3f %8.3f %9.0f\n", name.substr(name.rfind('/') + 1).c_str(), v.method.c_str(),
-                        v.reference.c_str(), v.seconds + v.reference_seconds, std::string(ls::name(v.answer)).c_str(), 100 * bias,
-                        100 * within, v.events);
+            for (const auto& interval : v.parts.front().interval)
+                within = std::max({within, interval.high, -interval.low});
+            std::printf("%-28s %-12s %-12s %9.1f %12s %8.3f %8.3f %9.0f\n", name.substr(name.rfind('/') + 1).c_str(),
+                        v.method.c_str(), v.reference.c_str(), v.seconds + v.reference_seconds,
+                        std::string(ls::name(v.answer)).c_str(), 100 * bias, 100 * within, v.events);
             std::fflush(stdout);
             wrong += v.disagrees();
             if (v.disagrees()) std::cout << v;
@@ -131,7 +141,8 @@ int main(int argc, char** argv) try {
     std::vector<std::string> scenes(ls::stock::names.begin(), ls::stock::names.end());
     if (what == "agree" && argc > 3) scenes.assign(argv + 3, argv + argc);
     int failures = 0;
-    if (what.empty() || what == "bugs") failures += bugs(number > 0 ? number : 120, what == "bugs" && argc > 3 ? argv[3] : "");
+    if (what.empty() || what == "bugs")
+        failures += bugs(number > 0 ? number : 120, what == "bugs" && argc > 3 ? argv[3] : "");
     if (what.empty() || what == "alarms") failures += alarms(number > 0 ? static_cast<int>(number) : 1000);
     if (what.empty() || what == "agree") failures += agree(number > 0 ? number : 120, scenes);
     return failures == 0 ? 0 : 1;

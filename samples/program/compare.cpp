@@ -98,7 +98,8 @@ int compare(const CompareOptions& options) {
     const NamedImage& reference = images.back();
 
     std::vector<Image> differences;  // all of them before anything is printed: one may be refused
-    for (std::size_t i = 0; i + 1 < images.size(); ++i) differences.push_back(difference(images[i].image, reference.image));
+    for (std::size_t i = 0; i + 1 < images.size(); ++i)
+        differences.push_back(difference(images[i].image, reference.image));
     for (std::size_t i = 0; i < differences.size(); ++i) {
         if (i > 0) fmt::print("\n");
         print_comparison(images[i], reference, differences[i]);

@@ -191,17 +191,20 @@ void add_render(CLI::App& app, RenderOptions& options) {
 
 void add_compare(CLI::App& app, CompareOptions& options) {
     app.add_option("IMAGES", options.images,
-                   "two or more images of one size: .exr, .hdr or .pfm. The last one\nis the reference, unless --reference names it")
+                   "two or more images of one size: .exr, .hdr or .pfm. The last one\nis the reference, unless "
+                   "--reference names it")
         ->type_name("");
     add_value(
         app, "-r,--reference", "FILE", [&](const std::string& text) { options.reference = text; },
         "what all images are compared with");
-    add_outputs(app, options.outputs,
-                ".png: the first image less the reference in false colours, red\nwhere it is brighter, with a legend; .exr or "
-                ".pfm: the\ndifference itself; may be repeated");
+    add_outputs(
+        app, options.outputs,
+        ".png: the first image less the reference in false colours, red\nwhere it is brighter, with a legend; .exr or "
+        ".pfm: the\ndifference itself; may be repeated");
     add_value(
         app, "--report", "FILE.html", [&](const std::string& text) { options.report = text; },
-        "a page to look at them: slider, flip, exposure, zoom, difference\nand FLIP maps, table of metrics. Needs no network");
+        "a page to look at them: slider, flip, exposure, zoom, difference\nand FLIP maps, table of metrics. Needs no "
+        "network");
     app.add_flag("--absolute", options.absolute, "write the magnitude of the difference instead");
     add_value(
         app, "--scale", "S", [&](const std::string& text) { options.scale = parse_float("--scale", text, 0, true); },
@@ -217,9 +220,7 @@ void add_compare(CLI::App& app, CompareOptions& options) {
 void add_verify(CLI::App& app, VerifyCommand& command) {
     add_scene_options(app, command.scene);
     const auto add_names = [&](const std::string& name, const std::string& type, std::vector<std::string>& names,
-                               const std::string& help) {
-        return app.add_option(name, names, help)->type_name(type);
-    };
+                               const std::string& help) { return app.add_option(name, names, help)->type_name(type); };
     add_names("-m,--methods", "NAMES", command.methods,
               "what to verify, separated by commas (default: all that have an\nexpected image, but the reference)")
         ->delimiter(',')
@@ -228,23 +229,29 @@ void add_verify(CLI::App& app, VerifyCommand& command) {
                    "what to verify them against (default: path; path-nee for scenes\nwith point or directional lights)")
         ->type_name("NAME");
     add_names("--images", "FILES", command.images,
-              "instead of methods: independent renders (different seeds) of the\nscene by any renderer, such as 'mine/*.exr'");
+              "instead of methods: independent renders (different seeds) of the\nscene by any renderer, such as "
+              "'mine/*.exr'");
     add_names("--against", "FILES", command.against, "with --images: the same by another renderer, instead of a scene");
     add_value(
         app, "--seconds", "S",
         [&](const std::string& text) { command.options.seconds = parse_number_option("--seconds", text, 0, true); },
-        "of rendering, in all, but at least three images of each\n(default: 60). It ends as soon as every question is decided");
+        "of rendering, in all, but at least three images of each\n(default: 60). It ends as soon as every question is "
+        "decided");
     add_value(
         app, "--confidence", "C",
         [&](const std::string& text) {
             command.options.confidence = parse_number_option("--confidence", text, 0, true);
             if (command.options.confidence >= 1) throw Error("--confidence: it must be below 1, such as 0.999");
         },
-        "a right method is called wrong with a probability of at most\n1 - C (default: 0.999); of files, if none of their samples is much\nbrighter than what they show");
+        "a right method is called wrong with a probability of at most\n1 - C (default: 0.999); of files, if none of "
+        "their samples is much\nbrighter than what they show");
     add_value(
         app, "--tolerance", "T",
-        [&](const std::string& text) { command.options.tolerance = parse_number_option("--tolerance", text, 0, false); },
-        "smallest bias of the image's mean that matters, as a fraction\n(default: 0.01). 0: look for any, until the time is over");
+        [&](const std::string& text) {
+            command.options.tolerance = parse_number_option("--tolerance", text, 0, false);
+        },
+        "smallest bias of the image's mean that matters, as a fraction\n(default: 0.01). 0: look for any, until the "
+        "time is over");
     add_value(
         app, "--lengths", "N",
         [&](const std::string& text) {

@@ -24,23 +24,26 @@ std::string bias_with_interval(const Image& image, const Image& reference) {
             differences.add(double(image.pixels()[i][c]) - double(reference.pixels()[i][c]));
         const Interval interval = welch_interval(Estimate::of(differences), Estimate::exact(0), 0.01);
         text += c > 0 ? ", " : "";
-        text += mean[c] > 0 ? percent_interval(differences.mean() / mean[c], {interval.low / mean[c], interval.high / mean[c]})
-                            : fmt::format("{:+.3g} of black", differences.mean());
+        text += mean[c] > 0
+                    ? percent_interval(differences.mean() / mean[c], {interval.low / mean[c], interval.high / mean[c]})
+                    : fmt::format("{:+.3g} of black", differences.mean());
     }
     return text;
 }
 
-ReportTable metrics_table(const std::vector<NamedImage>& images, std::size_t reference, const std::vector<double>& flips) {
-    ReportTable table{.caption = "Metrics against " + images[reference].name +
-                                 ". The bias is that of the means of red, green and blue, with a 99 % interval that takes pixels "
-                                 "to err independently.",
-                      .header = {"image", "MSE", "RMSE", "relMSE", "MAPE", "SMAPE", "HDR-FLIP", "bias"},
-                      .rows = {}};
+ReportTable metrics_table(const std::vector<NamedImage>& images, std::size_t reference,
+                          const std::vector<double>& flips) {
+    ReportTable table{
+        .caption = "Metrics against " + images[reference].name +
+                   ". The bias is that of the means of red, green and blue, with a 99 % interval that takes pixels "
+                   "to err independently.",
+        .header = {"image", "MSE", "RMSE", "relMSE", "MAPE", "SMAPE", "HDR-FLIP", "bias"},
+        .rows = {}};
     for (std::size_t i = 0; i < images.size(); ++i) {
         if (i == reference) continue;
         const Image &x = images[i].image, &r = images[reference].image;
-        table.rows.push_back({images[i].name, number(mse(x, r)), number(rmse(x, r)), number(relmse(x, r)), number(mape(x, r)),
-                              number(smape(x, r)), number(flips[i]), bias_with_interval(x, r)});
+        table.rows.push_back({images[i].name, number(mse(x, r)), number(rmse(x, r)), number(relmse(x, r)),
+                              number(mape(x, r)), number(smape(x, r)), number(flips[i]), bias_with_interval(x, r)});
     }
     return table;
 }
@@ -51,7 +54,8 @@ std::vector<double> add_flip(Report& report, const std::vector<NamedImage>& imag
     for (std::size_t i = 0; i < images.size(); ++i) {
         if (i == reference) continue;
         const auto finite = [](const NamedImage& image) {
-            return std::all_of(image.image.pixels().begin(), image.image.pixels().end(), [](const Rgb& p) { return is_finite(p); });
+            return std::all_of(image.image.pixels().begin(), image.image.pixels().end(),
+                               [](const Rgb& p) { return is_finite(p); });
         };
         means[i] = std::numeric_limits<double>::quiet_NaN();
         if (!finite(images[i]) || !finite(images[reference])) continue;  // FLIP has no answer to them
@@ -75,9 +79,10 @@ std::string length_text(const Verdict& v) {
 }
 
 ReportTable verdict_table(const std::vector<Verdict>& verdicts) {
-    ReportTable table{.caption = fmt::format("Verdicts, against {}", verdicts[0].reference),
-                      .header = {"method", "verdict", "why", "first wrong path length", "images", "samples per pixel", "seconds"},
-                      .rows = {}};
+    ReportTable table{
+        .caption = fmt::format("Verdicts, against {}", verdicts[0].reference),
+        .header = {"method", "verdict", "why", "first wrong path length", "images", "samples per pixel", "seconds"},
+        .rows = {}};
     for (const Verdict& v : verdicts)
         table.rows.push_back({v.method, std::string(name(v.answer)), v.reason, length_text(v), std::to_string(v.images),
                               std::to_string(v.samples), number(v.seconds)});
@@ -85,18 +90,21 @@ ReportTable verdict_table(const std::vector<Verdict>& verdicts) {
 }
 
 ReportTable parts_table(const Verdict& v) {
-    ReportTable table{.caption = fmt::format("{} against {} by path length. Bias: of the mean, as a part of the reference's whole image, "
-                                             "with an interval of confidence {:.6g} %. p: of the most improbable tile, times the number of tests",
-                                             v.method, v.reference, 100 * v.confidence),
-                      .header = {"paths", "verdict", "red", "green", "blue", "p", "where"},
-                      .rows = {}};
+    ReportTable table{
+        .caption = fmt::format(
+            "{} against {} by path length. Bias: of the mean, as a part of the reference's whole image, "
+            "with an interval of confidence {:.6g} %. p: of the most improbable tile, times the number of tests",
+            v.method, v.reference, 100 * v.confidence),
+        .header = {"paths", "verdict", "red", "green", "blue", "p", "where"},
+        .rows = {}};
     for (const Verdict::Part& part : v.parts)
         table.rows.push_back({name(part), part.disagrees ? "disagrees" : "no difference found",
-                              percent_interval(part.bias[0], part.interval[0]), percent_interval(part.bias[1], part.interval[1]),
+                              percent_interval(part.bias[0], part.interval[0]),
+                              percent_interval(part.bias[1], part.interval[1]),
                               percent_interval(part.bias[2], part.interval[2]), number(part.p),
                               part.p > 0.05 ? std::string()
-                                            : fmt::format("columns {} to {}, rows {} to {}", part.worst.x0, part.worst.x1 - 1,
-                                                          part.worst.y0, part.worst.y1 - 1)});
+                                            : fmt::format("columns {} to {}, rows {} to {}", part.worst.x0,
+                                                          part.worst.x1 - 1, part.worst.y0, part.worst.y1 - 1)});
     return table;
 }
 
@@ -108,11 +116,13 @@ Report comparison_report(const std::vector<NamedImage>& images, std::size_t refe
     for (std::size_t i = 0; i < images.size(); ++i) {
         report.images.push_back({.name = images[i].name, .image = images[i].image});
         if (i != reference && samples_of(images[i].image) > 0)
-            curve.points.push_back({.samples = samples_of(images[i].image), .error = std::sqrt(relmse(images[i].image, images[reference].image))});
+            curve.points.push_back({.samples = samples_of(images[i].image),
+                                    .error = std::sqrt(relmse(images[i].image, images[reference].image))});
     }
     report.reference = reference;
     if (curve.points.size() > 1) {
-        std::sort(curve.points.begin(), curve.points.end(), [](const auto& a, const auto& b) { return a.samples < b.samples; });
+        std::sort(curve.points.begin(), curve.points.end(),
+                  [](const auto& a, const auto& b) { return a.samples < b.samples; });
         report.curves.push_back(std::move(curve));
     }
     const std::vector<double> flips = add_flip(report, images, reference);
@@ -128,8 +138,9 @@ Report verdict_report(const std::string& scene, const std::vector<Verdict>& verd
     report.curves.clear();
     report.tables.insert(report.tables.begin(), verdict_table(verdicts));
     for (const Verdict& v : verdicts) {
-        report.summary += fmt::format("{}{} {} {}. {}", report.summary.empty() ? "" : "\n\n", v.method, name(v.answer),
-                                      v.answer == Verdict::Answer::undecided ? "against " + v.reference : "with " + v.reference, v.reason);
+        report.summary += fmt::format(
+            "{}{} {} {}. {}", report.summary.empty() ? "" : "\n\n", v.method, name(v.answer),
+            v.answer == Verdict::Answer::undecided ? "against " + v.reference : "with " + v.reference, v.reason);
         report.tables.push_back(parts_table(v));
         if (!v.p_values.empty()) {
             Image surprise = v.p_values;

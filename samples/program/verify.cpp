@@ -37,9 +37,11 @@ std::vector<std::string> expand(const std::vector<std::string>& patterns, std::s
         const int status = glob(pattern.c_str(), 0, nullptr, &found);
         for (std::size_t i = 0; status == 0 && i < found.gl_pathc; ++i) files.emplace_back(found.gl_pathv[i]);
         globfree(&found);
-        const bool scene = pattern.ends_with(".xml") || std::find(stock::names.begin(), stock::names.end(), pattern) != stock::names.end();
+        const bool scene = pattern.ends_with(".xml") ||
+                           std::find(stock::names.begin(), stock::names.end(), pattern) != stock::names.end();
         if (status != 0)
-            throw Error(fmt::format("{}: no file matches \"{}\"{}", option, pattern, scene ? "; name the scene before the files" : ""));
+            throw Error(fmt::format("{}: no file matches \"{}\"{}", option, pattern,
+                                    scene ? "; name the scene before the files" : ""));
     }
     return files;
 }
@@ -48,8 +50,10 @@ std::vector<std::string> expand(const std::vector<std::string>& patterns, std::s
 std::vector<Image> load_replicas(const std::vector<std::string>& patterns, std::string_view option) {
     const std::vector<std::string> files = expand(patterns, option);
     if (files.size() < 3)
-        throw Error(fmt::format("{}: {} file{} given; at least 3 independent renders (different seeds) are needed to know their "
-                                "noise, and 8 or more to see much", option, files.size(), files.size() == 1 ? " is" : "s are"));
+        throw Error(fmt::format(
+            "{}: {} file{} given; at least 3 independent renders (different seeds) are needed to know their "
+            "noise, and 8 or more to see much",
+            option, files.size(), files.size() == 1 ? " is" : "s are"));
     std::vector<Image> images;
     for (const std::string& file : files) {
         images.push_back(load_image(file));
@@ -57,7 +61,8 @@ std::vector<Image> load_replicas(const std::vector<std::string>& patterns, std::
         for (int y = 0; y < image.height(); ++y)
             for (int x = 0; x < image.width(); ++x)
                 if (!is_finite(image(x, y)))
-                    throw Error(fmt::format("{}: pixel ({}, {}) is not finite: nothing can be said of its mean", file, x, y));
+                    throw Error(
+                        fmt::format("{}: pixel ({}, {}) is not finite: nothing can be said of its mean", file, x, y));
         for (std::size_t i = 0; i + 1 < images.size(); ++i) {
             try {
                 refuse_unless_comparable(images[i], image);
@@ -65,7 +70,8 @@ std::vector<Image> load_replicas(const std::vector<std::string>& patterns, std::
                 throw Error(fmt::format("{} and {}: {}", files[i], file, error.what()));
             }
             if (images[i].pixels() == image.pixels())
-                throw Error(fmt::format("{} and {} are the same image: independent renders need different seeds", files[i], file));
+                throw Error(fmt::format("{} and {} are the same image: independent renders need different seeds",
+                                        files[i], file));
         }
     }
     return images;
@@ -78,9 +84,10 @@ std::string title_of(const std::vector<std::string>& patterns) {
 
 AnyMethod find_method(const std::string& wanted, std::string_view option) {
     if (std::find(known_methods.begin(), known_methods.end(), wanted) == known_methods.end())
-        throw Error(fmt::format("{}: there is no method \"{}\"{}; known are {}{}", option, wanted,
-                                suggestion(wanted, known_methods), list(known_methods),
-                                wanted.find('.') != std::string::npos ? "; files are named with --images and --against" : ""));
+        throw Error(
+            fmt::format("{}: there is no method \"{}\"{}; known are {}{}", option, wanted,
+                        suggestion(wanted, known_methods), list(known_methods),
+                        wanted.find('.') != std::string::npos ? "; files are named with --images and --against" : ""));
     return method_by_name(wanted);
 }
 
@@ -95,7 +102,8 @@ struct Contest {
 bool has_dirac_lights(const SceneSummary& summary) { return summary.point_lights + summary.directional_lights > 0; }
 
 /// The methods that are asked for, or all that can be verified on the scene.
-std::vector<std::string> chosen_methods(const VerifyCommand& command, const SceneSummary& summary, const std::string& reference) {
+std::vector<std::string> chosen_methods(const VerifyCommand& command, const SceneSummary& summary,
+                                        const std::string& reference) {
     if (!command.methods.empty()) return command.methods;
     std::vector<std::string> names;
     for_each_method([&](const auto& m) {
@@ -111,8 +119,8 @@ void load(Contest& contest, const VerifyCommand& command, const std::optional<Si
     SceneOptions options = command.scene;
     if (images) {
         if (options.size && (options.size->width != images->width || options.size->height != images->height))
-            throw Error(fmt::format("--size {}x{}: the images have {}x{} pixels, and so must the reference", options.size->width,
-                                    options.size->height, images->width, images->height));
+            throw Error(fmt::format("--size {}x{}: the images have {}x{} pixels, and so must the reference",
+                                    options.size->width, options.size->height, images->width, images->height));
         options.size = images;
     } else if (!options.size) {
         options.shrink_to = 128;  // tiles say as much; and the time goes into samples
@@ -147,8 +155,9 @@ Contest make_contest(const VerifyCommand& command, const std::stop_token& stop) 
         return contest;
     }
     if (command.scene.scene.empty())
-        throw Error(fmt::format("verify: name a scene (a file that ends in .xml, or one of {}), or files with --images and --against",
-                                list(stock::names)));
+        throw Error(fmt::format(
+            "verify: name a scene (a file that ends in .xml, or one of {}), or files with --images and --against",
+            list(stock::names)));
     load(contest, command, size);
     const SceneSummary& summary = contest.loaded->summary;
     contest.title = command.scene.scene;
@@ -161,7 +170,8 @@ Contest make_contest(const VerifyCommand& command, const std::stop_token& stop) 
         AnyMethod method = find_method(wanted, option);
         set_path_length(method, length);
         if (has_dirac_lights(summary) && !notes_on(wanted).sees_dirac_lights)
-            print_warning(fmt::format("the method {} cannot see the scene's point and directional lights, and will not agree", wanted));
+            print_warning(fmt::format(
+                "the method {} cannot see the scene's point and directional lights, and will not agree", wanted));
         const Settings settings{.threads = command.options.threads, .stop = stop};
         return std::visit([&](const auto& m) { return make_estimator(contest.loaded->scene, m, settings); }, method);
     };
@@ -172,7 +182,8 @@ Contest make_contest(const VerifyCommand& command, const std::stop_token& stop) 
         if (count >= 1) contest.methods[0].brightest = contest.reference->brightest / count;
     }
     if (!from_files)
-        for (const std::string& wanted : chosen_methods(command, summary, reference)) contest.methods.push_back(add(wanted, "--methods"));
+        for (const std::string& wanted : chosen_methods(command, summary, reference))
+            contest.methods.push_back(add(wanted, "--methods"));
     return contest;
 }
 
@@ -231,7 +242,9 @@ int status_of(const std::vector<Verdict>& verdicts) {
     const auto any = [&](Verdict::Answer answer) {
         return std::any_of(verdicts.begin(), verdicts.end(), [&](const Verdict& v) { return v.answer == answer; });
     };
-    return any(Verdict::Answer::disagrees) ? Status::disagrees : any(Verdict::Answer::undecided) ? Status::undecided : success;
+    return any(Verdict::Answer::disagrees)   ? Status::disagrees
+           : any(Verdict::Answer::undecided) ? Status::undecided
+                                             : success;
 }
 
 }  // namespace
@@ -248,8 +261,8 @@ int verify(const VerifyCommand& command) {
     VerifyOptions options = command.options;
     options.stop = cancellation.token();
     options.observer = [&](const VerifyProgress& progress) {
-        line.update(progress.seconds, fmt::format("{:.0f} s of at most {:.0f} s: {}, {} images", progress.seconds, options.seconds,
-                                                  progress.method, progress.images));
+        line.update(progress.seconds, fmt::format("{:.0f} s of at most {:.0f} s: {}, {} images", progress.seconds,
+                                                  options.seconds, progress.method, progress.images));
     };
     const std::vector<Verdict> verdicts = Verification(*contest.reference, contest.methods, options).run();
     line.clear();
@@ -264,10 +277,12 @@ int verify(const VerifyCommand& command) {
         if (command.json == "-") fmt::print("{}", dumped);
         else write_file_atomically(command.json, dumped);
     }
-    const bool drawn = std::none_of(verdicts.begin(), verdicts.end(), [](const Verdict& v) { return v.image.empty() || v.reference_image.empty(); });
+    const bool drawn = std::none_of(verdicts.begin(), verdicts.end(),
+                                    [](const Verdict& v) { return v.image.empty() || v.reference_image.empty(); });
     if (!command.report.empty() && drawn) save_report(command.report, verdict_report(contest.title, verdicts));
     if (!cancellation.token().stop_requested()) return status_of(verdicts);
-    print_note(drawn ? "cancelled: the verdict is on the images so far" : "cancelled before there was an image: no report is written");
+    print_note(drawn ? "cancelled: the verdict is on the images so far"
+                     : "cancelled before there was an image: no report is written");
     return Status::cancelled;
 }
 

@@ -102,8 +102,10 @@ TEST_CASE("an interval holds what the test does not refuse") {
                 const Interval interval = welch_interval(a, Estimate::exact(0), p);
                 CHECK(interval.low < 3);
                 CHECK(interval.high > 3);
-                CHECK(std::log(welch_p(a, Estimate::exact(interval.low))) == doctest::Approx(std::log(p)).epsilon(1e-3));
-                CHECK(std::log(welch_p(a, Estimate::exact(interval.high))) == doctest::Approx(std::log(p)).epsilon(1e-3));
+                CHECK(std::log(welch_p(a, Estimate::exact(interval.low))) ==
+                      doctest::Approx(std::log(p)).epsilon(1e-3));
+                CHECK(std::log(welch_p(a, Estimate::exact(interval.high))) ==
+                      doctest::Approx(std::log(p)).epsilon(1e-3));
             }
 }
 

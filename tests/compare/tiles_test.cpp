@@ -20,7 +20,8 @@ TEST_CASE("the tiles of every level cover the image once, and fine tiles lie in 
             }
             CHECK(std::all_of(seen.begin(), seen.end(), [](int n) { return n == 1; }));
             for (std::size_t t = 0; t < layout.tiles(finest); ++t) {
-                const PixelRectangle fine = layout.tile(finest, t), coarse = layout.tile(level, layout.ancestor(level, t));
+                const PixelRectangle fine = layout.tile(finest, t),
+                                     coarse = layout.tile(level, layout.ancestor(level, t));
                 CHECK(fine.x0 >= coarse.x0);
                 CHECK(fine.y0 >= coarse.y0);
                 CHECK(fine.x1 <= coarse.x1);

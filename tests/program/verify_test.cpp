@@ -28,8 +28,8 @@ void write_noise(const Workspace& workspace, const std::string& name, int count,
 // False alarm: 1e-3.
 TEST_CASE("verify: methods on a scene") {
     const Workspace workspace;
-    const Ended ended = run(workspace, {"verify", "furnace", "--size", "16x16", "--seconds", "20", "--tolerance", "0.02", "--json",
-                                        "v.json", "--report", "v.html"});
+    const Ended ended = run(workspace, {"verify", "furnace", "--size", "16x16", "--seconds", "20", "--tolerance",
+                                        "0.02", "--json", "v.json", "--report", "v.html"});
     CHECK(ended.status == 0);
     CHECK(ended.err == "");
     CHECK(ended.prints("path-nee against path: agrees. A bias of more than"));
@@ -50,7 +50,8 @@ TEST_CASE("verify: methods on a scene") {
 
 TEST_CASE("verify: too little time is no agreement") {
     const Workspace workspace;
-    const Ended ended = run(workspace, {"verify", "cornell-box", "--size", "16x16", "--seconds", "0.2", "--tolerance", "1e-4", "--quiet"});
+    const Ended ended = run(
+        workspace, {"verify", "cornell-box", "--size", "16x16", "--seconds", "0.2", "--tolerance", "1e-4", "--quiet"});
     CHECK(ended.status == 3);
     CHECK(ended.out == "");
     CHECK(ended.err == "");
@@ -70,11 +71,11 @@ TEST_CASE("verify: files against files, and against a method") {
     CHECK(other.status == 1);
     const auto json = nlohmann::json::parse(other.out);
     CHECK(json["verdicts"][0]["verdict"] == "disagrees");
-    
+
     CHECK(json["verdicts"][0]["parts"][0]["bias_interval"][1][0] > 0);
     // The furnace is 2 everywhere; the reference is rendered at the images' size. A list of files is as good as a pattern.
-    CHECK(run(workspace, {"verify", "furnace", "--images", "two-1.pfm", "two-2.pfm", "two-3.pfm", "two-4.pfm", "two-5.pfm",
-                          "two-6.pfm", "two-7.pfm", "--reference", "path-nee", "--tolerance", "0.5"})
+    CHECK(run(workspace, {"verify", "furnace", "--images", "two-1.pfm", "two-2.pfm", "two-3.pfm", "two-4.pfm",
+                          "two-5.pfm", "two-6.pfm", "two-7.pfm", "--reference", "path-nee", "--tolerance", "0.5"})
               .status == 0);
     CHECK(run(workspace, {"verify", "furnace", "--images", "c-*.pfm", "--reference", "path-nee"}).status == 1);
 }
@@ -83,7 +84,8 @@ TEST_CASE("verify: what it cannot do is an error that says what to do, and nothi
     const Workspace workspace;
     write_noise(workspace, "a", 4, 1, 1);
     write_noise(workspace, "few", 2, 1, 1);
-    for (int n = 1; n <= 3; ++n) lightswitch::save(workspace / ("same-" + std::to_string(n) + ".pfm"), lightswitch::Image(24, 16));
+    for (int n = 1; n <= 3; ++n)
+        lightswitch::save(workspace / ("same-" + std::to_string(n) + ".pfm"), lightswitch::Image(24, 16));
     lightswitch::Image broken(24, 16);
     broken(7, 3).y = std::nanf("");
     lightswitch::save(workspace / "nan-1.pfm", broken);

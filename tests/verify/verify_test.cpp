@@ -29,7 +29,9 @@ struct TooBright {
     void iterate(auto& frame, Nothing&) const {
         const double falls = shrinks ? std::pow(double(frame.iteration()) + 1, -1.0 / 3) : 1;
         const auto factor = static_cast<float>(1 + excess * falls);
-        frame.pixels([&](const Ray& ray, auto& sampler) { return factor * PathTracerNee{}.radiance(frame.scene(), ray, sampler); });
+        frame.pixels([&](const Ray& ray, auto& sampler) {
+            return factor * PathTracerNee{}.radiance(frame.scene(), ray, sampler);
+        });
     }
 };
 
@@ -181,7 +183,8 @@ TEST_CASE("contributions that are not finite are no agreement") {
     CHECK(verdict.disagrees());
     CHECK(verdict.non_finite > 0);
     // The reference's are not the method's fault, and nothing can be said.
-    const Verdict other = verify(scene, PathTracerNee{}, NotFinite{}, {.seconds = 0, .tolerance = 0.5, .images = 16, .samples = 1});
+    const Verdict other =
+        verify(scene, PathTracerNee{}, NotFinite{}, {.seconds = 0, .tolerance = 0.5, .images = 16, .samples = 1});
     CHECK(!other.agrees());
     CHECK(other.reference_non_finite > 0);
     if (!other.disagrees()) CHECK(other.reason.find("of the reference") != std::string::npos);
@@ -206,7 +209,8 @@ TEST_CASE("a small bulb beside a large lamp is no difference") {
 
 TEST_CASE("without a tolerance, too little is known to agree") {
     const auto scene = stock::cornell_box();
-    const Verdict verdict = verify(scene, PathTracerNee{}, PathTracer{}, {.seconds = 0, .tolerance = 0, .images = 4, .samples = 1});
+    const Verdict verdict =
+        verify(scene, PathTracerNee{}, PathTracer{}, {.seconds = 0, .tolerance = 0, .images = 4, .samples = 1});
     CHECK(verdict.answer == Verdict::Answer::undecided);
 }
 
@@ -235,7 +239,9 @@ TEST_CASE("images that are given: the same test") {
 TEST_CASE("what cannot be compared is refused, in words") {
     const auto scene = stock::furnace();
     CHECK(message_of([&] { verify(scene, Phong{}, PathTracer{}); }).find("phong is heuristic") == 0);
-    CHECK(message_of([&] { verify(scene, PathTracer{}, Silhouette{}); }).find("the reference must be unbiased: silhouette") == 0);
+    CHECK(message_of([&] {
+              verify(scene, PathTracer{}, Silhouette{});
+          }).find("the reference must be unbiased: silhouette") == 0);
     CHECK(message_of([&] { verify(scene, PathTracer{}, Image(8, 8), limited(3, 1)); }) ==
           "images of different size cannot be compared: 64 x 64 and 8 x 8 pixels");
     auto broken = noise(4, 8, 8, 1, 1);
@@ -244,7 +250,9 @@ TEST_CASE("what cannot be compared is refused, in words") {
           "image 3 of x is not finite in pixel (3, 5): nothing can be said of it");
     auto unequal = noise(4, 8, 8, 1, 1);
     unequal[1] = Image(8, 9);
-    CHECK(message_of([&] { verify(given(unequal, "x"), given(noise(4, 8, 8, 1, 2), "y")); }).find("the images of x differ in size") == 0);
+    CHECK(message_of([&] {
+              verify(given(unequal, "x"), given(noise(4, 8, 8, 1, 2), "y"));
+          }).find("the images of x differ in size") == 0);
     Estimator files = given(noise(4, 8, 8, 1, 1), "files");
     files.kind = Kind::consistent;
     CHECK(message_of([&] { verify(files, given(noise(4, 8, 8, 1, 2), "y")); }).find("files is consistent") == 0);
@@ -252,11 +260,14 @@ TEST_CASE("what cannot be compared is refused, in words") {
     other[0].metadata["scene"] = "one";
     auto others = noise(4, 8, 8, 1, 2);
     others[0].metadata["scene"] = "two";
-    CHECK(message_of([&] { verify(given(other, "x"), given(others, "y")); }).find("images with a different scene") == 0);
+    CHECK(message_of([&] { verify(given(other, "x"), given(others, "y")); }).find("images with a different scene") ==
+          0);
     CHECK(message_of([] { given({}, "none"); }) == "none: there are no images");
-    CHECK(message_of([&] { verify(scene, PathTracer{}, PathTracer{}, {.confidence = 1}); }).find("the confidence") == 0);
+    CHECK(message_of([&] { verify(scene, PathTracer{}, PathTracer{}, {.confidence = 1}); }).find("the confidence") ==
+          0);
     CHECK(message_of([&] { verify(scene, PathTracer{}, PathTracer{}, {.tolerance = -1}); }).find("the tolerance") == 0);
-    CHECK(message_of([&] { verify(scene, PathTracer{}, PathTracer{}, {.seconds = 0}); }).find("verify needs a limit") == 0);
+    CHECK(message_of([&] { verify(scene, PathTracer{}, PathTracer{}, {.seconds = 0}); }).find("verify needs a limit") ==
+          0);
 }
 
 TEST_CASE("it can be stopped, and says what it knows") {

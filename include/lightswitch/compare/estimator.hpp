@@ -1,6 +1,7 @@
 #pragma once
 
-// A source of independent images with one expected value: a method on a scene, files of another renderer, or the exact image.
+// A source of independent images with one expected value: a method on a scene, files of another renderer, or the
+// exact image.
 
 #include <lightswitch/render/render.hpp>
 #include <lightswitch/scene/scene.hpp>
@@ -13,14 +14,15 @@
 
 namespace lightswitch {
 
-/// What `verify` compares: something that gives independent, noisy images with one expected value, as many as one asks for.
-/// `render` may be called from several threads at once; what it refers to must outlive it.
+/// What `verify` compares: something that gives independent, noisy images with one expected value, as many as one
+/// asks for. `render` may be called from several threads at once; what it refers to must outlive it.
 struct Estimator {
     /// What one image is to be made of.
     struct Request {
-        std::uint64_t seed = 0;     ///< different seeds give independent images
-        std::uint64_t index = 0;    ///< how many images were asked for before, for sources that have a fixed number of them
-        int iterations = 1;         ///< samples per pixel
+        std::uint64_t seed = 0;  ///< different seeds give independent images
+        std::uint64_t index =
+            0;               ///< how many images were asked for before, for sources that have a fixed number of them
+        int iterations = 1;  ///< samples per pixel
         int max_depth = unlimited;  ///< longest path, or what the method itself says
         std::stop_token stop = {};  ///< ends the render early; the image is then thrown away
 
@@ -34,14 +36,14 @@ struct Estimator {
     bool independent_pixels = false;     ///< pixels share no random numbers: true of pixel methods
     bool exact = false;                  ///< has no noise: one image is all there is to know
     std::uint64_t available = 0;         ///< number of images that there are; 0: as many as one asks for
-    /// The largest radiance that a path can meet by chance, per channel and for one sample per pixel; 0 when it is not known. What was
-    /// not seen yet may be as bright.
+    /// The largest radiance that a path can meet by chance, per channel and for one sample per pixel; 0 when it is
+    /// not known. What was not seen yet may be as bright.
     Rgb brightest{0};
     std::function<Image(const Request&)> render;
 };
 
-/// The method on the scene. Refers to `scene` and copies `method`. A member `max_depth` of the method is taken to be the longest path as in
-/// `PathLength`: 1 is emission seen directly, 2 adds direct light, -1 is unlimited.
+/// The method on the scene. Refers to `scene` and copies `method`. A member `max_depth` of the method is taken to be
+/// the longest path as in `PathLength`: 1 is emission seen directly, 2 adds direct light, -1 is unlimited.
 template <class SceneType, class M>
 Estimator estimator(const SceneType& scene, const M& method, const Settings& settings = {}) {
     constexpr bool limits_depth = requires(M m) { m.max_depth = 1; };
@@ -69,18 +71,21 @@ Estimator estimator(const SceneType& scene, const M& method, const Settings& set
 
 /// The scene would be gone before the estimator is used.
 template <class SceneType, class M>
-    requires requires { typename SceneType::Data; }
+requires requires { typename SceneType::Data; }
 Estimator estimator(const SceneType&& scene, const M& method, const Settings& settings = {}) = delete;
 
 /// The same for a scene that nobody else keeps.
 template <class SceneType, class M>
 Estimator estimator(std::shared_ptr<const SceneType> scene, const M& method, const Settings& settings = {}) {
     Estimator result = estimator(*scene, method, settings);
-    result.render = [scene, inner = std::move(result.render)](const Estimator::Request& request) { return inner(request); };
+    result.render = [scene, inner = std::move(result.render)](const Estimator::Request& request) {
+        return inner(request);
+    };
     return result;
 }
 
-/// Images that are there already: independent renders of one scene by another renderer, say. Throws `Error` without any.
+/// Images that are there already: independent renders of one scene by another renderer, say. Throws `Error` without
+/// any.
 inline Estimator given(std::vector<Image> images, std::string name) {
     if (images.empty()) throw Error(name + ": there are no images");
     Estimator result;

@@ -12,9 +12,9 @@
 
 namespace lightswitch::detail {
 
-/// Draws images and keeps their moments. Part 0 is the whole image. Where depth can be limited, part d is the image of the paths of
-/// length d, and the last part that of all longer ones: the difference of two renders with the same seed, which for path
-/// tracers are the same paths and cancel.
+/// Draws images and keeps their moments. Part 0 is the whole image. Where depth can be limited, part d is the image
+/// of the paths of length d, and the last part that of all longer ones: the difference of two renders with the same
+/// seed, which for path tracers are the same paths and cancel.
 class Replicas {
 public:
     /// `stream` tells apart the estimators of a run.
@@ -64,8 +64,8 @@ public:
         return result;
     }
 
-    /// What a bias is a fraction of: the mean of the whole image per channel, but at least a tenth of the mean of all channels; 1 for
-    /// a black image, where the bias is then in units of radiance.
+    /// What a bias is a fraction of: the mean of the whole image per channel, but at least a tenth of the mean of all
+    /// channels; 1 for a black image, where the bias is then in units of radiance.
     std::array<double, 3> scale() const {
         DVec3 mean(0);
         for (const DVec3& s : sum_) mean += s / (double(count()) * double(sum_.size()));
@@ -77,8 +77,8 @@ public:
 
     /// Samples per pixel of the images to come.
     void set_samples(int iterations) { iterations_ = iterations; }
-    /// Chooses them so that an image takes about that many seconds, by images that are thrown away; those of one sample are kept. Where
-    /// one takes more than `too_long`, path lengths are not told apart.
+    /// Chooses them so that an image takes about that many seconds, by images that are thrown away; those of one
+    /// sample are kept. Where one takes more than `too_long`, path lengths are not told apart.
     void choose_samples(double seconds, double too_long, const std::stop_token& stop) {
         constexpr int most = 1024;
         iterations_ = 1;
@@ -110,8 +110,8 @@ public:
         seed_ = mix64(seed_);
     }
 
-    /// Adds up to `wanted` images, as many as are worth making at a time; false when the run was stopped meanwhile. Small images are
-    /// rendered side by side: one alone would not occupy all processors.
+    /// Adds up to `wanted` images, as many as are worth making at a time; false when the run was stopped meanwhile.
+    /// Small images are rendered side by side: one alone would not occupy all processors.
     bool draw(std::uint64_t wanted, const std::stop_token& stop, const Executor auto& executor) {
         const auto begin = Clock::now();
         constexpr std::uint64_t small = 128 * 128;
@@ -127,9 +127,10 @@ public:
 
     /// The probability, if pixels erred independently, that they would seem to move together as much as they do.
     ///
-    /// The difference of two images has pixels that are positive or negative with equal probability, each by itself. So for the
-    /// differences d of a tile (sum d)^2 / sum d^2 - 1 has mean zero, whatever their sizes; it is positive when neighbours share
-    /// random numbers. Each pair of images gives one value per tile size; they are judged by Student's t, on one side.
+    /// The difference of two images has pixels that are positive or negative with equal probability, each by itself.
+    /// So for the differences d of a tile (sum d)^2 / sum d^2 - 1 has mean zero, whatever their sizes; it is positive
+    /// when neighbours share random numbers. Each pair of images gives one value per tile size; they are judged by
+    /// Student's t, on one side.
     double pixel_correlation_p() const {
         double smallest = 1;
         for (const Moments& m : {near_, far_}) {
@@ -144,9 +145,9 @@ public:
     double pixel_correlation() const { return std::max(near_.mean(), far_.mean()); }
 
 private:
-    /// By how much one sample that is brighter than usual may raise a pixel of one image, as far as one can know: by what was seen anywhere
-    /// in the images, or by the brightest lamp; where no lamp is known, by four times what was seen. Lamps in view do not
-    /// count where paths are taken apart: they are not rare.
+    /// By how much one sample that is brighter than usual may raise a pixel of one image, as far as one can know: by
+    /// what was seen anywhere in the images, or by the brightest lamp; where no lamp is known, by four times what was
+    /// seen. Lamps in view do not count where paths are taken apart: they are not rare.
     const DVec3& brightest_event() const {
         if (event_at_ == count()) return event_;
         event_at_ = count();
@@ -162,7 +163,8 @@ private:
 
     std::vector<Image> render_all(std::uint64_t index, const std::stop_token& stop) const {
         std::vector<Image> images;
-        Estimator::Request request{.seed = mix64(seed_ + index), .index = index, .iterations = iterations_, .stop = stop};
+        Estimator::Request request{
+            .seed = mix64(seed_ + index), .index = index, .iterations = iterations_, .stop = stop};
         for (int d = 1; d <= lengths_; ++d) {
             request.max_depth = d;
             images.push_back(estimator_.render(request));
@@ -211,8 +213,9 @@ private:
         for (int y = 0; y < image.height(); ++y)
             for (int x = 0; x < image.width(); ++x)
                 if (!is_finite(image(x, y)))
-                    fail("image " + std::to_string(count() + 1) + " of " + estimator_.name + " is not finite in pixel (" +
-                         std::to_string(x) + ", " + std::to_string(y) + "): nothing can be said of it");
+                    fail("image " + std::to_string(count() + 1) + " of " + estimator_.name +
+                         " is not finite in pixel (" + std::to_string(x) + ", " + std::to_string(y) +
+                         "): nothing can be said of it");
     }
     [[noreturn]] static void fail(const std::string& what) { throw Error(what); }
 

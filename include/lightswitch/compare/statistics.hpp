@@ -1,7 +1,7 @@
 #pragma once
 
-// Means of few noisy values, and whether two of them can have the same expectation: Welch's test, and what becomes of it when
-// rare events decide.
+// Means of few noisy values, and whether two of them can have the same expectation: Welch's test, and what becomes of
+// it when rare events decide.
 
 #include <algorithm>
 #include <cmath>
@@ -33,7 +33,8 @@ inline double incomplete_beta(double a, double b, double x) {
     return front * h;
 }
 
-/// Probability that Student's t with that many degrees of freedom (may be infinite) is at least |t| away from 0, on either side.
+/// Probability that Student's t with that many degrees of freedom (may be infinite) is at least |t| away from 0, on
+/// either side.
 inline double student_p(double t, double freedom) {
     if (std::isinf(freedom)) return std::erfc(std::abs(t) / std::sqrt(2.0));
     return incomplete_beta(0.5 * freedom, 0.5, freedom / (freedom + t * t));
@@ -60,8 +61,8 @@ inline double student_quantile(double p, double freedom) {
     return detail::solve_falling(p, [freedom](double t) { return student_p(t, freedom); });
 }
 
-/// Mean, variance and third central moment of values that come one by one (Pebay 2008, "Formulas for robust, one-pass parallel
-/// computation of covariances and arbitrary-order statistical moments").
+/// Mean, variance and third central moment of values that come one by one (Pebay 2008, "Formulas for robust, one-pass
+/// parallel computation of covariances and arbitrary-order statistical moments").
 class Moments {
 public:
     void add(double x) {
@@ -96,8 +97,8 @@ struct Estimate {
 
     /// What is known without noise.
     static Estimate exact(double value) { return {value, 0, std::numeric_limits<double>::infinity(), 0, 0}; }
-    /// Of independent values that have the same expectation. Of the third moment only what exceeds two standard errors, as normal
-    /// values would have them, counts: else the noise of a few values would look like skewness.
+    /// Of independent values that have the same expectation. Of the third moment only what exceeds two standard
+    /// errors, as normal values would have them, counts: else the noise of a few values would look like skewness.
     static Estimate of(const Moments& m) {
         const double n = static_cast<double>(m.count());
         const double noise = 2 * std::sqrt(6 / n * m.variance()) * m.variance();
@@ -120,13 +121,13 @@ struct Estimate {
 
 namespace detail {
 
-/// -log of the probability that a sum of rare events falls `z` standard deviations short, where the deviation is judged by the events
-/// that were seen and the sum has skewness `skew`.
+/// -log of the probability that a sum of rare events falls `z` standard deviations short, where the deviation is
+/// judged by the events that were seen and the sum has skewness `skew`.
 ///
-/// A sum of Poisson events has skewness 1 / sqrt(number of events). When j were seen, z deviations short of k = j + z sqrt(j), the
-/// probability of j or fewer is about exp(-(k - j - j log(k / j))). For skew -> 0 this is the normal z^2 / 2; its next term
-/// is that of Edgeworth's expansion of Student's t. It grows without bound only as the missing events grow in number, so a sum
-/// that has not seen them cannot seem certain.
+/// A sum of Poisson events has skewness 1 / sqrt(number of events). When j were seen, z deviations short of k = j + z
+/// sqrt(j), the probability of j or fewer is about exp(-(k - j - j log(k / j))). For skew -> 0 this is the normal z^2
+/// / 2; its next term is that of Edgeworth's expansion of Student's t. It grows without bound only as the missing
+/// events grow in number, so a sum that has not seen them cannot seem certain.
 inline double shortfall_rate(double z, double skew) {
     if (z * skew < 1e-3) return 0.5 * z * z - z * z * z * skew / 3;
     return (z * skew - std::log1p(z * skew)) / (skew * skew);
@@ -139,9 +140,7 @@ inline double log_normal_p(double z) {
 }
 
 /// log of the p-value z of which is corrected for skewness.
-inline double log_corrected_p(double z, double skew) {
-    return log_normal_p(z) + 0.5 * z * z - shortfall_rate(z, skew);
-}
+inline double log_corrected_p(double z, double skew) { return log_normal_p(z) + 0.5 * z * z - shortfall_rate(z, skew); }
 
 /// The normal number as improbable as Student's t, and back; in proportion where that is less than any double.
 inline double normal_from_student(double t, double freedom) {
@@ -153,7 +152,8 @@ inline double normal_from_student(double t, double freedom) {
 inline double student_from_normal(double z, double freedom) {
     constexpr double least = 1e-300, infinite = std::numeric_limits<double>::infinity();
     if (std::isinf(freedom)) return z;
-    if (const double log_p = log_normal_p(z); log_p > std::log(least)) return student_quantile(std::exp(log_p), freedom);
+    if (const double log_p = log_normal_p(z); log_p > std::log(least))
+        return student_quantile(std::exp(log_p), freedom);
     return z * student_quantile(least, freedom) / student_quantile(least, infinite);
 }
 
@@ -166,10 +166,11 @@ inline double missing_skew(const Estimate& a, const Estimate& b) {
 
 }  // namespace detail
 
-/// The probability of a difference at least as large when the expectations are equal: Welch's test, with two corrections for rare events that
-/// the smaller side may have missed. Those of a kind that was seen: see `detail::shortfall_rate`. Those of a kind that was
-/// not: if `Estimate::unseen` is what one of them adds, k = difference / unseen of them are missing, which happens with
-/// probability exp(-k). Differences of up to `allowed` are no evidence.
+/// The probability of a difference at least as large when the expectations are equal: Welch's test, with two
+/// corrections for rare events that the smaller side may have missed. Those of a kind that was seen: see
+/// `detail::shortfall_rate`. Those of a kind that was not: if `Estimate::unseen` is what one of them adds, k =
+/// difference / unseen of them are missing, which happens with probability exp(-k). Differences of up to `allowed`
+/// are no evidence.
 inline double welch_p(const Estimate& a, const Estimate& b, double allowed = 0) {
     const Estimate difference = a - b;
     const double beyond = std::abs(difference.mean) - allowed;

@@ -9,9 +9,9 @@ namespace lightswitch::detail {
 
 class TestOfParts;
 
-/// What the bias of a consistent method may be at this look: what it may have been at the first one, times a power of the ratio of
-/// samples. Progressive photon mapping's bias falls with the squared radius, on average over n iterations as n^(-1/3) (Knaus
-/// and Zwicker 2011, with alpha = 2/3); here a power of -1/4 is asked for.
+/// What the bias of a consistent method may be at this look: what it may have been at the first one, times a power of
+/// the ratio of samples. Progressive photon mapping's bias falls with the squared radius, on average over n
+/// iterations as n^(-1/3) (Knaus and Zwicker 2011, with alpha = 2/3); here a power of -1/4 is asked for.
 class ShrinkingBound {
 public:
     double allowed(std::size_t part, std::size_t level, std::size_t tile, std::size_t channel) const {
@@ -29,9 +29,10 @@ private:
 
 /// The comparison of two sets of images at one look.
 ///
-/// `level` is the probability of a false alarm that the look may use up. Half goes to the whole image, half to its parts by length, in equal
-/// shares; each part shares in equal shares among the tile sizes, and there among tiles and channels. The sum of the
-/// probabilities of events bounds the probability of any, whatever depends on what (Bonferroni).
+/// `level` is the probability of a false alarm that the look may use up. Half goes to the whole image, half to its
+/// parts by length, in equal shares; each part shares in equal shares among the tile sizes, and there among tiles and
+/// channels. The sum of the probabilities of events bounds the probability of any, whatever depends on what
+/// (Bonferroni).
 class TestOfParts {
 public:
     TestOfParts(const Replicas& ours, const Replicas& theirs, double level, const ShrinkingBound* bound)
@@ -46,8 +47,8 @@ public:
     std::vector<Verdict::Part> parts;
     Image p_values;
     double events = std::numeric_limits<double>::infinity();
-    /// The smallest `VerifyOptions::tolerance` that all intervals of the first three tile sizes keep within; and what it would be if
-    /// nothing rare could be missing.
+    /// The smallest `VerifyOptions::tolerance` that all intervals of the first three tile sizes keep within; and what
+    /// it would be if nothing rare could be missing.
     double needed_tolerance = 0, plain_tolerance = 0;
 
 private:
@@ -70,7 +71,8 @@ private:
                     const double slack = rounding * (std::abs(a[t][c].mean) + std::abs(b[t][c].mean));
                     const double p = welch_p(a[t][c], b[t][c], slack + (bound_ ? bound_->allowed(i, l, t, c) : 0));
                     if (finest) p_values.pixels()[t][static_cast<int>(c)] = static_cast<float>(p);
-                    // The place is the largest difference on the finest level that shows one; or else the most improbable.
+                    // The place is the largest difference on the finest level that shows one; or else the most
+                    // improbable.
                     const double off = std::abs(a[t][c].mean - b[t][c].mean);
                     const bool significant = p * tests < level;
                     if (significant ? off > largest : !part.disagrees && p * tests < worst) {
@@ -99,7 +101,8 @@ private:
             part.share[c] = b[c].mean / scale[c];
             if (part.length > 0) continue;
             for (const Estimate* e : {&a[c], &b[c]})
-                if (e->third > 0) events = std::min(events, e->variance * e->variance * e->variance / (e->third * e->third));
+                if (e->third > 0)
+                    events = std::min(events, e->variance * e->variance * e->variance / (e->third * e->third));
         }
     }
 
@@ -136,7 +139,8 @@ inline void ShrinkingBound::learn(const TestOfParts& test) {
         for (std::size_t l = 0; l < layout.levels(); ++l) {
             const auto a = test.ours_.estimates(i, l), b = test.theirs_.estimates(i, l);
             auto& tiles = first_[i].emplace_back(a.size());
-            // Far beyond the noise of the tile, so that missing the truth here costs nothing of the stated rate that counts.
+            // Far beyond the noise of the tile, so that missing the truth here costs nothing of the stated rate that
+            // counts.
             const double p = test.level_ / (3 * double(layout.tiles(l)) * double(layout.levels()));
             for (std::size_t t = 0; t < a.size(); ++t)
                 for (std::size_t c = 0; c < 3; ++c) {

@@ -15,8 +15,8 @@ struct PixelRectangle {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 };
 
-/// How an image is cut into tiles: level 0 is the whole, level k has up to 2^k x 2^k tiles, the finest at most 16 x 16 of at least
-/// 4 x 4 pixels.
+/// How an image is cut into tiles: level 0 is the whole, level k has up to 2^k x 2^k tiles, the finest at most 16 x
+/// 16 of at least 4 x 4 pixels.
 class TileLayout {
 public:
     TileLayout() = default;
@@ -40,7 +40,8 @@ public:
     PixelRectangle tile(std::size_t level, std::size_t index) const {
         const int columns = columns_[level], rows = rows_[level];
         const int i = static_cast<int>(index) % columns, j = static_cast<int>(index) / columns;
-        return {edge(i, columns, width_), edge(j, rows, height_), edge(i + 1, columns, width_), edge(j + 1, rows, height_)};
+        return {edge(i, columns, width_), edge(j, rows, height_), edge(i + 1, columns, width_),
+                edge(j + 1, rows, height_)};
     }
     /// The tile of `level` that holds the finest tile `index`.
     std::size_t ancestor(std::size_t level, std::size_t index) const {
@@ -57,7 +58,9 @@ private:
         for (int k = 0; k < level && 2 * count * 4 <= pixels; ++k) count *= 2;
         return count;
     }
-    static int edge(int i, int parts, int pixels) { return static_cast<int>(static_cast<long long>(pixels) * i / parts); }
+    static int edge(int i, int parts, int pixels) {
+        return static_cast<int>(static_cast<long long>(pixels) * i / parts);
+    }
 
     int width_ = 0, height_ = 0;
     std::vector<int> columns_, rows_;
@@ -93,7 +96,8 @@ public:
             for (std::size_t t = 0; t < sums[level].size(); ++t) {
                 const PixelRectangle r = layout_.tile(level, t);
                 const double area = double(r.x1 - r.x0) * double(r.y1 - r.y0);
-                for (int c = 0; c < 3; ++c) levels_[level][t][static_cast<std::size_t>(c)].add(sums[level][t][c] / area);
+                for (int c = 0; c < 3; ++c)
+                    levels_[level][t][static_cast<std::size_t>(c)].add(sums[level][t][c] / area);
             }
     }
 
@@ -115,8 +119,10 @@ public:
             const std::vector<double> from_finest = third_from_finest(level, c);
             for (std::size_t t = 0; t < tiles.size(); ++t) {
                 Estimate& e = result[t][c] = Estimate::of(tiles[t][c]);
-                e.third = std::max({e.third, from_finest[t], usual_skewness * std::pow(tiles[t][c].variance(), 1.5) / (n * n)});
-                // What is rare may have happened in other tiles only. A share of the average tile's moments makes room for it.
+                e.third = std::max(
+                    {e.third, from_finest[t], usual_skewness * std::pow(tiles[t][c].variance(), 1.5) / (n * n)});
+                // What is rare may have happened in other tiles only. A share of the average tile's moments makes
+                // room for it.
                 const double share = std::max(0.05, 4 / n);
                 e.variance += share * pooled_variance / n;
                 e.third += share * pooled_third / (n * n);
@@ -126,12 +132,14 @@ public:
     }
 
 private:
-    /// The third moment of the mean by the tiles' own: better known than from the images' means where tiles are independent.
+    /// The third moment of the mean by the tiles' own: better known than from the images' means where tiles are
+    /// independent.
     std::vector<double> third_from_finest(std::size_t level, std::size_t channel) const {
         const std::size_t finest = layout_.levels() - 1;
         std::vector<double> sums(layout_.tiles(level), 0.0);
         if (level == finest) return sums;
-        const double share = double(layout_.tiles(level)) / double(layout_.tiles(finest)), n = static_cast<double>(count());
+        const double share = double(layout_.tiles(level)) / double(layout_.tiles(finest)),
+                     n = static_cast<double>(count());
         for (std::size_t t = 0; t < layout_.tiles(finest); ++t)
             sums[layout_.ancestor(level, t)] += levels_[finest][t][channel].third() * share * share * share / (n * n);
         return sums;

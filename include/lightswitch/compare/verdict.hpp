@@ -25,15 +25,16 @@ struct Verdict {
 
     /// The comparison of one part of the image: all of it, or the paths of one length.
     struct Part {
-        int length = 0;         ///< path length as in `PathLength`; 0: all lengths together
+        int length = 0;           ///< path length as in `PathLength`; 0: all lengths together
         bool and_longer = false;  ///< that length and all longer ones
         bool disagrees = false;
-        double p = 1;  ///< smallest p-value, multiplied by the number of tests in this part; by chance below x with probability x
-        PixelRectangle worst;   ///< where that is
-        int worst_channel = 0;  ///< 0 red, 1 green, 2 blue
+        double p =
+            1;  ///< smallest p-value, multiplied by the number of tests in this part; by chance below x with probability x
+        PixelRectangle worst;         ///< where that is
+        int worst_channel = 0;        ///< 0 red, 1 green, 2 blue
         double ours = 0, theirs = 0;  ///< radiance there
-        /// Whole-image mean less the reference's, per channel, as a fraction of the reference's whole image (all lengths); in
-        /// units of radiance where the reference is black.
+        /// Whole-image mean less the reference's, per channel, as a fraction of the reference's whole image (all
+        /// lengths); in units of radiance where the reference is black.
         std::array<double, 3> bias{};
         std::array<Interval, 3> interval{};  ///< of the bias, valid whenever the run was stopped
         std::array<double, 3> share{};       ///< of the reference's whole image that these paths carry
@@ -41,9 +42,9 @@ struct Verdict {
 
     /// The image so far, and what it cost.
     struct Moment {
-        double seconds = 0;           ///< spent on this method
-        std::uint64_t samples = 0;    ///< per pixel
-        double error = 0;             ///< root of the relMSE to the reference's final image, whose own noise is part of it
+        double seconds = 0;         ///< spent on this method
+        std::uint64_t samples = 0;  ///< per pixel
+        double error = 0;  ///< root of the relMSE to the reference's final image, whose own noise is part of it
     };
 
     std::string method, reference;
@@ -51,13 +52,14 @@ struct Verdict {
     std::string reason;          ///< one sentence
     int first_wrong_length = 0;  ///< 0 when it is not known
     bool correlated_pixels = false;
-    std::vector<Part> parts;     ///< all lengths first, then one by one; empty when nothing could be compared
+    std::vector<Part> parts;  ///< all lengths first, then one by one; empty when nothing could be compared
 
     double confidence = 0, tolerance = 0;
-    double seconds = 0, reference_seconds = 0;              ///< spent rendering
-    double found_after = 0;  ///< seconds from the beginning of the run until a difference was found; 0 when there is none
-    std::uint64_t images = 0, reference_images = 0;         ///< independent ones
-    std::uint64_t samples = 0, reference_samples = 0;       ///< per pixel, in all; of a consistent method in the last look
+    double seconds = 0, reference_seconds = 0;  ///< spent rendering
+    double found_after =
+        0;  ///< seconds from the beginning of the run until a difference was found; 0 when there is none
+    std::uint64_t images = 0, reference_images = 0;    ///< independent ones
+    std::uint64_t samples = 0, reference_samples = 0;  ///< per pixel, in all; of a consistent method in the last look
     double events = 0;  ///< effective number of events that the image's mean rests on, of the side that has fewer
     std::uint64_t non_finite = 0, reference_non_finite = 0;  ///< contributions that were replaced by black
 
@@ -71,9 +73,9 @@ struct Verdict {
 
 constexpr std::string_view name(Verdict::Answer answer) {
     switch (answer) {
-    case Verdict::Answer::agrees: return "agrees";
-    case Verdict::Answer::disagrees: return "disagrees";
-    default: return "undecided";
+        case Verdict::Answer::agrees: return "agrees";
+        case Verdict::Answer::disagrees: return "disagrees";
+        default: return "undecided";
     }
 }
 
@@ -109,7 +111,8 @@ inline int surest_channel(const Verdict::Part& part) {
 
 inline std::string percent_interval(const Verdict::Part& part, int channel) {
     const auto i = static_cast<std::size_t>(channel);
-    return format("%+.3g %% (%+.3g to %+.3g)", 100 * part.bias[i], 100 * part.interval[i].low, 100 * part.interval[i].high);
+    return format("%+.3g %% (%+.3g to %+.3g)", 100 * part.bias[i], 100 * part.interval[i].low,
+                  100 * part.interval[i].high);
 }
 
 }  // namespace detail
@@ -120,8 +123,8 @@ inline std::ostream& operator<<(std::ostream& out, const Verdict& v) {
     for (const Verdict::Part& part : v.parts) {
         const int channel = detail::surest_channel(part);
         out << "  " << name(part) << ": " << (part.disagrees ? "disagrees" : "no difference found") << ", bias "
-            << detail::percent_interval(part, channel) << " in " << detail::channel_names[static_cast<std::size_t>(channel)]
-            << ", p " << detail::format("%.3g", part.p);
+            << detail::percent_interval(part, channel) << " in "
+            << detail::channel_names[static_cast<std::size_t>(channel)] << ", p " << detail::format("%.3g", part.p);
         if (part.disagrees)
             out << detail::format(", most in columns %d to %d, rows %d to %d: %.5g instead of %.5g (%s)", part.worst.x0,
                                   part.worst.x1 - 1, part.worst.y0, part.worst.y1 - 1, part.ours, part.theirs,

@@ -1,0 +1,40 @@
+#pragma once
+
+// How long and how strictly `verify` works.
+
+#include <cstdint>
+#include <functional>
+#include <stop_token>
+#include <string>
+
+namespace lightswitch {
+
+/// What an observer of `verify` is told.
+struct VerifyProgress {
+    double seconds = 0;
+    double fraction = 0;  ///< of the time that it may take, 0 to 1: it may well end before
+    std::string method;   ///< that just made an image
+    std::uint64_t images = 0;
+};
+
+/// How `verify` works; the defaults are right for most uses.
+struct VerifyOptions {
+    double seconds =
+        20;  ///< of rendering, in all, but at least three images of each; it ends as soon as every question is decided
+    /// A method that agrees is said to disagree with a probability of at most 1 - confidence, if no lamp, or no
+    /// sample of an image without a scene, is much brighter than what is known of (see `Estimator::brightest`).
+    double confidence = 0.999;
+    /// The smallest bias of the whole image that matters, as a fraction: it agrees when a larger one is ruled out. A
+    /// tile that is one of n may be off by sqrt(n) times as much, because its mean is as much noisier. 0: use all the
+    /// time to look for any difference, and hold it to 0.01 at the end.
+    double tolerance = 0.01;
+    int path_lengths = 5;  ///< compared one by one; 0: only all together
+    std::uint64_t seed = 0;
+    int images = 0;             ///< at most, per method; 0: as many as there is time for
+    int samples = 0;            ///< per pixel of each image; 0: chosen by the time that they take
+    int threads = 0;            ///< 0: as many as the machine has
+    std::stop_token stop = {};  ///< ends the run early, with a verdict on what there is
+    std::function<void(const VerifyProgress&)> observer = {};  ///< called as images are made
+};
+
+}  // namespace lightswitch
