@@ -115,7 +115,7 @@ private:
                 if (l > 0) ours.unseen = theirs.unseen = 0;  // what may be missing of the whole bounds it for the tiles
                 const auto need = [&] {
                     const Interval interval = welch_interval(ours, theirs, level_ / (3 * 3 * tiles));
-                    return std::max(interval.high, -interval.low) / (scale[c] * std::sqrt(tiles));
+                    return std::max(interval.high, -interval.low) / (scale[c] * tiles);
                 };
                 needed_tolerance = std::max(needed_tolerance, need());
                 ours.third = theirs.third = ours.unseen = theirs.unseen = 0;

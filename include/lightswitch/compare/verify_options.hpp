@@ -24,8 +24,8 @@ struct VerifyOptions {
     /// A method that agrees is said to disagree with a probability of at most 1 - confidence, if no lamp, or no
     /// sample of an image without a scene, is much brighter than what is known of (see `Estimator::brightest`).
     double confidence = 0.999;
-    /// The smallest bias of the whole image that matters, as a fraction: it agrees when a larger one is ruled out. A
-    /// tile that is one of n may be off by sqrt(n) times as much, because its mean is as much noisier. 0: use all the
+    /// The smallest bias of the whole image that matters, as a fraction: it agrees when a larger one is ruled out, and
+    /// also one of any quarter or sixteenth of the image that by itself would change the mean by so much. 0: use all the
     /// time to look for any difference, and hold it to 0.01 at the end.
     double tolerance = 0.01;
     int path_lengths = 5;  ///< compared one by one; 0: only all together
