@@ -75,6 +75,13 @@ LoadedScene load_scene(const SceneOptions& options) {
     return {std::move(summary), build_any(description, options.build)};
 }
 
+PathLength path_length(const SceneSummary& summary, const std::optional<int>& max_depth,
+                       const std::optional<int>& rr_depth) {
+    const PathLength usual;
+    return {.max_depth = max_depth.value_or(summary.max_depth.value_or(usual.max_depth)),
+            .rr_depth = rr_depth.value_or(summary.rr_depth.value_or(usual.rr_depth))};
+}
+
 std::optional<Box> bounds(const AnyScene& any_scene) {
     return std::visit(
         [](const auto& scene) -> std::optional<Box> {

@@ -4,6 +4,7 @@
 
 #include "program.hpp"
 
+#include <lightswitch/method/roulette.hpp>
 #include <lightswitch/scene/any_scene.hpp>
 
 namespace lightswitch::program {
@@ -24,6 +25,10 @@ struct LoadedScene {
 
 /// Reads and builds the scene. Throws `Error` for whatever is wrong with it.
 LoadedScene load_scene(const SceneOptions& options);
+
+/// How long paths may become: as the command line says, or else the scene, or else as usual.
+PathLength path_length(const SceneSummary& summary, const std::optional<int>& max_depth,
+                       const std::optional<int>& rr_depth);
 
 /// A box in scene units.
 struct Box {

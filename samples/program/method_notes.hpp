@@ -40,4 +40,7 @@ inline constexpr auto known_methods = []<std::size_t... I>(std::index_sequence<I
 }
 (std::make_index_sequence<std::variant_size_v<AnyMethod>>{});
 
+/// The method that an option names. Throws `Error`, which ends with `hint`, when there is none.
+AnyMethod find_method(std::string_view wanted, std::string_view option, std::string_view hint = "");
+
 }  // namespace lightswitch::program

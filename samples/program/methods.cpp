@@ -1,9 +1,19 @@
 #include "method_notes.hpp"
 #include "program.hpp"
+#include "text.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace lightswitch::program {
+
+AnyMethod find_method(std::string_view wanted, std::string_view option, std::string_view hint) {
+    if (std::find(known_methods.begin(), known_methods.end(), wanted) == known_methods.end())
+        throw Error(fmt::format("{}: there is no method \"{}\"{}; known are {}{}", option, wanted,
+                                suggestion(wanted, known_methods), list(known_methods), hint));
+    return method_by_name(wanted);
+}
 
 int list_methods() {
     for_each_method([](const auto& method) {

@@ -16,13 +16,6 @@
 namespace lightswitch::program {
 namespace {
 
-AnyMethod find_method(const std::string& wanted) {
-    if (std::find(known_methods.begin(), known_methods.end(), wanted) == known_methods.end())
-        throw Error(fmt::format("--method: there is no method \"{}\"{}; known are {}", wanted,
-                                suggestion(wanted, known_methods), list(known_methods)));
-    return method_by_name(wanted);
-}
-
 /// Everything that can be known to be unwritable before the work begins.
 void check_outputs(const RenderOptions& options) {
     if (options.outputs.empty() && options.stats.empty())
@@ -85,12 +78,6 @@ void warn_about_values(const RenderCounts& counts, const Image& image) {
         counts.non_finite, first.pixel % width, first.pixel / width, first.iteration, first.seed, first.iteration + 1));
 }
 
-PathLength path_length(const RenderOptions& options, const SceneSummary& summary) {
-    const PathLength usual;
-    return {.max_depth = options.max_depth.value_or(summary.max_depth.value_or(usual.max_depth)),
-            .rr_depth = options.rr_depth.value_or(summary.rr_depth.value_or(usual.rr_depth))};
-}
-
 Budget budget(const RenderOptions& options, const SceneSummary& summary) {
     Budget result = options.budget;
     if (result.samples == 0 && result.seconds == 0 && result.error == 0) result.samples = summary.samples.value_or(64);
@@ -113,11 +100,11 @@ std::string summary_line(const AnyMethod& method, const Rendered& rendered, cons
 }  // namespace
 
 int render(const RenderOptions& options) {
-    AnyMethod method = find_method(options.method);
+    AnyMethod method = find_method(options.method, "--method");
     check_outputs(options);
     const LoadedScene loaded = load_scene(options.scene);
     warn_about_scene(loaded, method, options);
-    set_path_length(method, path_length(options, loaded.summary));
+    set_path_length(method, path_length(loaded.summary, options.max_depth, options.rr_depth));
 
     const Cancellation cancellation;
     ProgressLine line(!options.quiet);

@@ -53,12 +53,8 @@ std::vector<double> add_flip(Report& report, const std::vector<NamedImage>& imag
     std::vector<double> means(images.size(), 0.0);
     for (std::size_t i = 0; i < images.size(); ++i) {
         if (i == reference) continue;
-        const auto finite = [](const NamedImage& image) {
-            return std::all_of(image.image.pixels().begin(), image.image.pixels().end(),
-                               [](const Rgb& p) { return is_finite(p); });
-        };
         means[i] = std::numeric_limits<double>::quiet_NaN();
-        if (!finite(images[i]) || !finite(images[reference])) continue;  // FLIP has no answer to them
+        if (images[i].image.first_not_finite() || images[reference].image.first_not_finite()) continue;  // FLIP refuses
         Image map = hdr_flip(images[i].image, images[reference].image);
         means[i] = map.mean().x;
         report.maps.push_back({.name = "FLIP of " + images[i].name,
@@ -67,11 +63,6 @@ std::vector<double> add_flip(Report& report, const std::vector<NamedImage>& imag
                                .legend = "HDR-FLIP: 0 looks the same, 1 as different as can be"});
     }
     return means;
-}
-
-double samples_of(const Image& image) {
-    const auto found = image.metadata.find("samples");
-    return found == image.metadata.end() ? 0 : std::strtod(found->second.c_str(), nullptr);
 }
 
 std::string length_text(const Verdict& v) {
@@ -109,6 +100,11 @@ ReportTable parts_table(const Verdict& v) {
 }
 
 }  // namespace
+
+double samples_of(const Image& image) {
+    const auto found = image.metadata.find("samples");
+    return found == image.metadata.end() ? 0 : std::strtod(found->second.c_str(), nullptr);
+}
 
 Report comparison_report(const std::vector<NamedImage>& images, std::size_t reference) {
     Report report{.title = "Comparison with " + images[reference].name};

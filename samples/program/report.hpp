@@ -16,6 +16,9 @@ struct NamedImage {
     Image image;
 };
 
+/// How many samples per pixel the image's file says that it holds; 0 when it does not say.
+double samples_of(const Image& image);
+
 /// Images against one of them: metrics, maps, and error over samples where the files say how many they hold.
 Report comparison_report(const std::vector<NamedImage>& images, std::size_t reference);
 

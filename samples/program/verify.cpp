@@ -58,11 +58,9 @@ std::vector<Image> load_replicas(const std::vector<std::string>& patterns, std::
     for (const std::string& file : files) {
         images.push_back(load_image(file));
         const Image& image = images.back();
-        for (int y = 0; y < image.height(); ++y)
-            for (int x = 0; x < image.width(); ++x)
-                if (!is_finite(image(x, y)))
-                    throw Error(
-                        fmt::format("{}: pixel ({}, {}) is not finite: nothing can be said of its mean", file, x, y));
+        if (const auto at = image.first_not_finite())
+            throw Error(fmt::format("{}: pixel ({}, {}) is not finite: nothing can be said of its mean", file, at->first,
+                                    at->second));
         for (std::size_t i = 0; i + 1 < images.size(); ++i) {
             try {
                 refuse_unless_comparable(images[i], image);
@@ -80,15 +78,6 @@ std::vector<Image> load_replicas(const std::vector<std::string>& patterns, std::
 /// What a set of files is called.
 std::string title_of(const std::vector<std::string>& patterns) {
     return patterns.size() == 1 ? patterns[0] : fmt::format("{} and {} more", patterns[0], patterns.size() - 1);
-}
-
-AnyMethod find_method(const std::string& wanted, std::string_view option) {
-    if (std::find(known_methods.begin(), known_methods.end(), wanted) == known_methods.end())
-        throw Error(
-            fmt::format("{}: there is no method \"{}\"{}; known are {}{}", option, wanted,
-                        suggestion(wanted, known_methods), list(known_methods),
-                        wanted.find('.') != std::string::npos ? "; files are named with --images and --against" : ""));
-    return method_by_name(wanted);
 }
 
 /// What stands on both sides, and what keeps it alive.
@@ -164,10 +153,10 @@ Contest make_contest(const VerifyCommand& command, const std::stop_token& stop) 
 
     std::string reference = command.reference;
     if (reference.empty()) reference = has_dirac_lights(summary) ? PathTracerNee::name : PathTracer::name;
-    const PathLength length{.max_depth = command.max_depth.value_or(summary.max_depth.value_or(PathLength{}.max_depth)),
-                            .rr_depth = summary.rr_depth.value_or(PathLength{}.rr_depth)};
+    const PathLength length = path_length(summary, command.max_depth, {});
     const auto add = [&](const std::string& wanted, std::string_view option) {
-        AnyMethod method = find_method(wanted, option);
+        const bool file = wanted.find('.') != std::string::npos;
+        AnyMethod method = find_method(wanted, option, file ? "; files are named with --images and --against" : "");
         set_path_length(method, length);
         if (has_dirac_lights(summary) && !notes_on(wanted).sees_dirac_lights)
             print_warning(fmt::format(
@@ -177,9 +166,8 @@ Contest make_contest(const VerifyCommand& command, const std::stop_token& stop) 
     };
     contest.reference = add(reference, "--reference");
     if (from_files) {  // the lamps are known, and perhaps how many samples their light is averaged over
-        const auto samples = images[0].metadata.find("samples");
-        const float count = samples == images[0].metadata.end() ? 0 : std::strtof(samples->second.c_str(), nullptr);
-        if (count >= 1) contest.methods[0].brightest = contest.reference->brightest / count;
+        const double samples = samples_of(images[0]);
+        if (samples >= 1) contest.methods[0].brightest = contest.reference->brightest / static_cast<float>(samples);
     }
     if (!from_files)
         for (const std::string& wanted : chosen_methods(command, summary, reference))

@@ -1,24 +1,13 @@
+#include "support/errors.hpp"
+
 #include <lightswitch/compare/difference.hpp>
 
 #include <doctest/doctest.h>
 
-#include <functional>
 #include <string>
 
 using namespace lightswitch;
-
-namespace {
-
-std::string message_of(const std::function<void()>& action) {
-    try {
-        action();
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return "(no error)";
-}
-
-}  // namespace
+using lightswitch::test::message_of;
 
 TEST_CASE("difference: signed and absolute, per channel and pixel") {
     Image a(2, 1), b(2, 1);

@@ -1,3 +1,5 @@
+#include "support/errors.hpp"
+
 #include <lightswitch/compare/flip.hpp>
 
 #include <doctest/doctest.h>
@@ -9,6 +11,7 @@
 #include <vector>
 
 using namespace lightswitch;
+using lightswitch::test::message_of;
 
 namespace {
 
@@ -116,15 +119,6 @@ const std::array<Expected, 10> table{{
 
 Image constant(float value, int width = 5, int height = 4) {
     return make(width, height, [value](int, int, int) { return value; });
-}
-
-std::string message_of(const auto& call) {
-    try {
-        call();
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return "nothing was thrown";
 }
 
 }  // namespace

@@ -1,3 +1,5 @@
+#include "support/errors.hpp"
+
 #include <lightswitch/film/image_io.hpp>
 
 #include <doctest/doctest.h>
@@ -6,7 +8,6 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <limits>
 #include <random>
 #include <string>
@@ -19,6 +20,7 @@
 #endif
 
 using namespace lightswitch;
+using lightswitch::test::message_of;
 namespace fs = std::filesystem;
 
 namespace {
@@ -74,15 +76,6 @@ bool same_bits(const Image& a, const Image& b) {
             if (std::bit_cast<std::uint32_t>(a.pixels()[i][c]) != std::bit_cast<std::uint32_t>(b.pixels()[i][c]))
                 return false;
     return true;
-}
-
-std::string message_of(const std::function<void()>& action) {
-    try {
-        action();
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return "(no error)";
 }
 
 bool contains(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }

@@ -1,5 +1,6 @@
 // The test of methods: what it finds, what it does not, and when it says that it cannot tell.
 
+#include "support/errors.hpp"
 #include "verify/planted/catalogue.hpp"
 
 #include <lightswitch/lightswitch.hpp>
@@ -9,6 +10,7 @@
 #include <random>
 
 using namespace lightswitch;
+using lightswitch::test::message_of;
 
 namespace {
 
@@ -59,15 +61,6 @@ struct CountsBounces {
         return PathTracer{.max_depth = max_depth < 0 ? -1 : max_depth + 1}.radiance(scene, ray, sampler);
     }
 };
-
-std::string message_of(const auto& call) {
-    try {
-        call();
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return "no error";
-}
 
 std::vector<Image> noise(int count, int width, int height, float level, unsigned seed) {
     std::mt19937 engine(seed);

@@ -33,12 +33,10 @@ struct FlipOptions {
 namespace detail::flip {
 
 inline void refuse_non_finite(const Image& image, const std::string& name) {
-    for (int y = 0; y < image.height(); ++y)
-        for (int x = 0; x < image.width(); ++x)
-            if (!is_finite(image(x, y)))
-                throw Error("FLIP needs finite pixels, but in the " + name + " the pixel in column " +
-                            std::to_string(x) + ", row " + std::to_string(y) +
-                            " (from 0, top left) is NaN or infinite: replace it first");
+    if (const auto at = image.first_not_finite())
+        throw Error("FLIP needs finite pixels, but in the " + name + " the pixel in column " +
+                    std::to_string(at->first) + ", row " + std::to_string(at->second) +
+                    " (from 0, top left) is NaN or infinite: replace it first");
 }
 
 /// Throws unless the images show the same thing and have only finite pixels.

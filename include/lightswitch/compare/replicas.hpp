@@ -185,10 +185,10 @@ private:
             for (TileMoments& part : parts_) part = TileMoments(TileLayout(all.width(), all.height()));
         }
         refuse(all);
-        for (std::size_t i = 0; i < sum_.size(); ++i) sum_[i] += DVec3(all.pixels()[i]);
         if (const auto found = all.metadata.find("non_finite"); found != all.metadata.end())
             non_finite_ += std::strtoull(found->second.c_str(), nullptr, 10);
         for (std::size_t i = 0; i < sum_.size(); ++i) {
+            sum_[i] += DVec3(all.pixels()[i]);
             const Rgb indirect = lengths_ > 0 ? all.pixels()[i] - images[0].pixels()[i] : all.pixels()[i];
             largest_[i] = count() == 0 ? indirect : glm::max(largest_[i], indirect);
             average_[i] += DVec3(indirect);
@@ -207,40 +207,37 @@ private:
 
     void refuse(const Image& image) const {
         if (image.width() != layout().width() || image.height() != layout().height())
-            fail("the images of " + estimator_.name + " differ in size: " + std::to_string(layout().width()) + " x " +
+            throw Error("the images of " + estimator_.name + " differ in size: " + std::to_string(layout().width()) + " x " +
                  std::to_string(layout().height()) + " and " + std::to_string(image.width()) + " x " +
                  std::to_string(image.height()) + " pixels");
-        for (int y = 0; y < image.height(); ++y)
-            for (int x = 0; x < image.width(); ++x)
-                if (!is_finite(image(x, y)))
-                    fail("image " + std::to_string(count() + 1) + " of " + estimator_.name +
-                         " is not finite in pixel (" + std::to_string(x) + ", " + std::to_string(y) +
-                         "): nothing can be said of it");
+        if (const auto at = image.first_not_finite())
+            throw Error("image " + std::to_string(count() + 1) + " of " + estimator_.name +
+                        " is not finite in pixel (" + std::to_string(at->first) + ", " + std::to_string(at->second) +
+                        "): nothing can be said of it");
     }
-    [[noreturn]] static void fail(const std::string& what) { throw Error(what); }
 
+    // In green alone: channels err together.
     void correlate(const Image& a, const Image& b) {
         const std::size_t finest = layout().levels() - 1;
-        DVec3 whole_sum(0), whole_squares(0), near(0);
-        double terms = 0;
+        double whole_sum = 0, whole_squares = 0, near = 0, terms = 0;
         for (std::size_t t = 0; t < layout().tiles(finest); ++t) {
             const PixelRectangle r = layout().tile(finest, t);
-            DVec3 sum(0), squares(0);
+            double sum = 0, squares = 0;
             for (int y = r.y0; y < r.y1; ++y)
                 for (int x = r.x0; x < r.x1; ++x) {
-                    const DVec3 d = DVec3(a(x, y)) - DVec3(b(x, y));
+                    const double d = double(a(x, y).y) - double(b(x, y).y);
                     sum += d;
                     squares += d * d;
                 }
             whole_sum += sum;
             whole_squares += squares;
-            if (squares.y > 0) {
-                near += sum * sum / squares - 1.0;  // only green is used: channels err together
+            if (squares > 0) {
+                near += sum * sum / squares - 1;
                 terms += 1;
             }
         }
-        if (terms > 0) near_.add(near.y / terms);
-        if (whole_squares.y > 0) far_.add(whole_sum.y * whole_sum.y / whole_squares.y - 1.0);
+        if (terms > 0) near_.add(near / terms);
+        if (whole_squares > 0) far_.add(whole_sum * whole_sum / whole_squares - 1);
     }
 
     Estimator estimator_;

@@ -189,7 +189,6 @@ inline double welch_p(const Estimate& a, const Estimate& b, double allowed = 0) 
 /// An interval for a difference of expectations.
 struct Interval {
     double low = 0, high = 0;
-    bool within(double bound) const { return low >= -bound && high <= bound; }
 };
 
 /// All differences of the expectations of `a` and `b` that `welch_p` does not refuse at the level `p`.

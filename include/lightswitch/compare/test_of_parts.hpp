@@ -36,7 +36,7 @@ private:
 class TestOfParts {
 public:
     TestOfParts(const Replicas& ours, const Replicas& theirs, double level, const ShrinkingBound* bound)
-        : ours_(ours), theirs_(theirs), level_(level), bound_(bound) {
+        : ours_(ours), theirs_(theirs), scale_(theirs.scale()), level_(level), bound_(bound) {
         const std::size_t count = ours.parts() == theirs.parts() ? ours.parts() : 1;
         for (std::size_t i = 0; i < count; ++i) {
             const double share = count == 1 ? 1 : i == 0 ? 0.5 : 0.5 / double(count - 1);
@@ -93,12 +93,11 @@ private:
     }
 
     void measure_bias(Verdict::Part& part, const std::array<Estimate, 3>& a, const std::array<Estimate, 3>& b) {
-        const auto scale = theirs_.scale();
         for (std::size_t c = 0; c < 3; ++c) {
             const Interval interval = welch_interval(a[c], b[c], level_ / 3);
-            part.bias[c] = (a[c].mean - b[c].mean) / scale[c];
-            part.interval[c] = {interval.low / scale[c], interval.high / scale[c]};
-            part.share[c] = b[c].mean / scale[c];
+            part.bias[c] = (a[c].mean - b[c].mean) / scale_[c];
+            part.interval[c] = {interval.low / scale_[c], interval.high / scale_[c]};
+            part.share[c] = b[c].mean / scale_[c];
             if (part.length > 0) continue;
             for (const Estimate* e : {&a[c], &b[c]})
                 if (e->third > 0)
@@ -107,7 +106,6 @@ private:
     }
 
     void measure_need(std::size_t l, const auto& a, const auto& b) {
-        const auto scale = theirs_.scale();
         const double tiles = double(a.size());
         for (std::size_t t = 0; t < a.size(); ++t)
             for (std::size_t c = 0; c < 3; ++c) {
@@ -115,7 +113,7 @@ private:
                 if (l > 0) ours.unseen = theirs.unseen = 0;  // what may be missing of the whole bounds it for the tiles
                 const auto need = [&] {
                     const Interval interval = welch_interval(ours, theirs, level_ / (3 * 3 * tiles));
-                    return std::max(interval.high, -interval.low) / (scale[c] * tiles);
+                    return std::max(interval.high, -interval.low) / (scale_[c] * tiles);
                 };
                 needed_tolerance = std::max(needed_tolerance, need());
                 ours.third = theirs.third = ours.unseen = theirs.unseen = 0;
@@ -127,6 +125,7 @@ private:
     static constexpr double rounding = 5e-6;
 
     const Replicas &ours_, &theirs_;
+    std::array<double, 3> scale_;  // what a bias is a fraction of
     double level_;
     const ShrinkingBound* bound_;
 };

@@ -83,9 +83,8 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
     static constexpr std::uint64_t first_look = 16;
-    static constexpr double usual_tolerance = 0.01;
-    static constexpr std::size_t most_snapshot_pixels = std::size_t{1}
-                                                        << 24;  // 200 MB; of larger images the latest are kept
+    // 200 MB; of larger images the latest are kept.
+    static constexpr std::size_t most_snapshot_pixels = std::size_t{1} << 24;
     static constexpr double seconds_per_image = 0.02;  // short enough to find what is plain to see within a second
 
     struct Subject {
@@ -158,7 +157,8 @@ private:
         Verdict& v = s.verdict;
         if (!reference_.usable() || !s.replicas.usable()) return;
         if (s.bound && s.replicas.count() < first_look && !v.parts.empty()) return;  // the look before says more
-        refuse_unless_comparable(s.replicas.image(), reference_.image());
+        const Image image = s.replicas.image();
+        refuse_unless_comparable(image, reference_.image());
         const bool only = is_fixed(s.replicas) || is_fixed(reference_);
         if (only && !last && !worth_the_only_look(s.replicas, reference_)) return;
         const double alpha = 1 - options_.confidence, level = only ? alpha : alpha / (look * (look + 1.0));
@@ -169,7 +169,7 @@ private:
         v.events = test.events;
         v.images = s.replicas.count();
         v.samples = s.replicas.samples_drawn();
-        v.image = s.replicas.image();
+        v.image = image;
         s.needed_tolerance = test.needed_tolerance;
         s.rare = test.needed_tolerance > 1.5 * test.plain_tolerance;
         s.alarms.resize(v.parts.size(), false);
@@ -177,8 +177,8 @@ private:
             v.parts[i].disagrees = s.alarms[i] = s.alarms[i] || v.parts[i].disagrees;
         v.correlated_pixels = v.correlated_pixels || s.replicas.pixel_correlation_p() < 0.05 * level;
         v.curve.push_back({s.replicas.seconds(), v.samples, 0});
-        s.snapshots.push_back(v.image);
-        while (s.snapshots.size() > 1 && s.snapshots.size() * v.image.pixels().size() > most_snapshot_pixels)
+        s.snapshots.push_back(image);
+        while (s.snapshots.size() > 1 && s.snapshots.size() * image.pixels().size() > most_snapshot_pixels)
             s.snapshots.erase(s.snapshots.begin());
 
         const bool biased = std::find(s.alarms.begin(), s.alarms.end(), true) != s.alarms.end();
@@ -253,7 +253,7 @@ private:
         const auto any = [&](auto property) { return std::any_of(v.parts.begin(), v.parts.end(), property); };
         const bool alarm = any([](const auto& part) { return part.disagrees; });
         const bool lasts = any([](const auto& part) { return part.disagrees && part.p < 0.01; });
-        const double tolerance = options_.tolerance > 0 ? options_.tolerance : usual_tolerance;
+        const double tolerance = options_.tolerance > 0 ? options_.tolerance : VerifyOptions{}.tolerance;
         if (v.parts.empty()) {
             v.reason = "There are too few images to compare: at least 3 of each are needed.";
         } else if (alarm && !lasts) {

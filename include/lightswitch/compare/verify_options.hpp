@@ -19,8 +19,8 @@ struct VerifyProgress {
 
 /// How `verify` works; the defaults are right for most uses.
 struct VerifyOptions {
-    double seconds =
-        20;  ///< of rendering, in all, but at least three images of each; it ends as soon as every question is decided
+    /// Of rendering, in all, but at least three images of each; it ends as soon as every question is decided.
+    double seconds = 20;
     /// A method that agrees is said to disagree with a probability of at most 1 - confidence, if no lamp, or no
     /// sample of an image without a scene, is much brighter than what is known of (see `Estimator::brightest`).
     double confidence = 0.999;

@@ -6,6 +6,7 @@
 #include <lightswitch/core/math.hpp>
 
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -46,6 +47,14 @@ public:
         DVec3 sum(0);
         for (const Rgb& p : pixels_) sum += DVec3(p);
         return pixels_.empty() ? sum : sum / static_cast<double>(pixels_.size());
+    }
+
+    /// Column and row of the first pixel, row by row from the top, that is not finite; nothing when all are.
+    std::optional<std::pair<int, int>> first_not_finite() const {
+        for (int y = 0; y < height_; ++y)
+            for (int x = 0; x < width_; ++x)
+                if (!is_finite((*this)(x, y))) return std::pair(x, y);
+        return std::nullopt;
     }
 
     /// Throws `Error` unless an image of that size is allowed.
