@@ -106,7 +106,7 @@ public:
         for (TileMoments& part : parts_) part = TileMoments();
         sum_.clear();
         previous_.reset();
-        drawn_ = 0;
+        drawn_ = event_at_ = 0;
         seed_ = mix64(seed_);
     }
 
@@ -207,9 +207,9 @@ private:
 
     void refuse(const Image& image) const {
         if (image.width() != layout().width() || image.height() != layout().height())
-            throw Error("the images of " + estimator_.name + " differ in size: " + std::to_string(layout().width()) + " x " +
-                 std::to_string(layout().height()) + " and " + std::to_string(image.width()) + " x " +
-                 std::to_string(image.height()) + " pixels");
+            throw Error("the images of " + estimator_.name + " differ in size: " + std::to_string(layout().width()) +
+                        " x " + std::to_string(layout().height()) + " and " + std::to_string(image.width()) + " x " +
+                        std::to_string(image.height()) + " pixels");
         if (const auto at = image.first_not_finite())
             throw Error("image " + std::to_string(count() + 1) + " of " + estimator_.name +
                         " is not finite in pixel (" + std::to_string(at->first) + ", " + std::to_string(at->second) +
