@@ -25,6 +25,14 @@ inline constexpr std::array method_notes{
                 "see point and directional lights; small lamps are noisy", false},
     MethodNotes{PathTracerNee::name, "all light transport, lamps sampled directly: the best choice for most scenes",
                 "find caustics of point and directional lights; those of small lamps are noisy"},
+    MethodNotes{LightTracer::name, "light from the lamps' side: sharp caustics, point lights, lamps seen directly",
+                "show what is seen in a mirror or through glass"},
+    MethodNotes{Bdpt::name, "all light transport, paths from both sides joined in every way: hidden lamps, caustics",
+                "find caustics of point lights in mirrors; a sample costs several times one of path-nee"},
+    MethodNotes{PhotonMapping::name, "caustics, also seen in mirrors, and smooth indirect light, blurred within a shrinking radius",
+                "be sharp at once: its error falls slowly; glossy surfaces are noisy"},
+    MethodNotes{Vcm::name, "all light transport: bdpt that also merges nearby paths, so caustics seen in mirrors, too",
+                "be exact at once where it merges; takes memory for all light paths of an iteration"},
 };
 
 /// The notes on a method of `AnyMethod`.

@@ -79,6 +79,7 @@ std::string statistics_json(const AnyScene& scene, const AnyMethod& method, cons
             json["camera"] = built.camera_id();
         },
         scene);
+    for (const auto& [key, value] : statistics.of_method) json[key] = value;
     json["embree_version"] = RTC_VERSION_STRING;
     json["lightswitch_version"] = version();
     json["cancelled"] = statistics.cancelled;

@@ -23,6 +23,15 @@ struct AreaPdf {
     friend auto operator<=>(const AreaPdf&, const AreaPdf&) = default;
 };
 
+/// Density of light that leaves a surface, with respect to its area and to solid angle, in 1 / (render unit)^2 / sr. A Dirac
+/// distribution over place or direction is left out of it.
+struct EmissionPdf {
+    float value = 0;
+
+    friend EmissionPdf operator*(EmissionPdf p, float probability) { return {p.value * probability}; }
+    friend auto operator<=>(const EmissionPdf&, const EmissionPdf&) = default;
+};
+
 /// Changes area density to solid angle density as seen from a point at `distance_squared`, where `abs_cosine` is the
 /// cosine at the surface that is seen (Veach 1997, equation 8.10). Infinite at grazing angles.
 inline SolidAnglePdf to_solid_angle(AreaPdf p, float distance_squared, float abs_cosine) {
@@ -33,6 +42,8 @@ inline SolidAnglePdf to_solid_angle(AreaPdf p, float distance_squared, float abs
 inline AreaPdf to_area(SolidAnglePdf p, float distance_squared, float abs_cosine) {
     return {p.value * abs_cosine / distance_squared};
 }
+
+inline EmissionPdf operator*(AreaPdf place, SolidAnglePdf direction) { return {place.value * direction.value}; }
 
 /// Multiple importance sampling weight of the strategy that has density `ours`, against one other strategy
 /// (power heuristic with exponent 2; Veach 1997, section 9.2.3). Both 0 gives 0; an infinite `ours` gives 1.

@@ -113,9 +113,20 @@ class Sampler {
 public:
     /// `stream` tells apart independent uses within an iteration (pixels, light paths), `index` the pixel or path.
     Sampler(const IterationPoints& points, std::uint32_t stream, std::uint64_t index)
-        : points_(&points),
+        : points_(&points), sobol_end_(points.pairs_),
           key_(detail::mix64((points.pairs_ ? points.seed_ : points.iteration_) ^
                              ((index + 1) * 0x9e3779b97f4a7c15u + (std::uint64_t{stream} << 56)))) {}
+
+    /// A second sampler, whose numbers are independent of this one's however many are drawn from either: it takes the second half
+    /// of the Sobol' pairs that are left. For a method that draws two paths of unknown length for one sample.
+    Sampler split() {
+        Sampler other = *this;
+        other.key_ = detail::mix64(detail::fold_multiply(key_ + pair_++ * 0xa0761d6478bd642fu) ^ 0x8bb84b93962eacc9u);
+        const std::uint32_t half = std::max(pair_, (pair_ + sobol_end_) / 2);
+        other.pair_ = half;
+        sobol_end_ = std::min(sobol_end_, half);
+        return other;
+    }
 
     /// A number in [0, 1).
     [[gnu::always_inline]] float next_1d() { return next_2d().x; }
@@ -125,7 +136,7 @@ public:
         const std::uint32_t pair = pair_++;
         std::uint64_t bits = detail::fold_multiply(key_ + pair * 0xa0761d6478bd642fu);
         IterationPoints::Point base{0, 0};
-        if (pair < points_->pairs_) [[likely]]
+        if (pair < sobol_end_) [[likely]]
             base = points_->points_[pair];
         else if (points_->pairs_ != 0)
             bits = detail::mix64(bits ^ points_->iteration_);
@@ -135,8 +146,9 @@ public:
 
 private:
     const IterationPoints* points_;
-    std::uint64_t key_;
+    std::uint32_t sobol_end_;  // beyond this pair numbers are independent
     std::uint32_t pair_ = 0;
+    std::uint64_t key_;
 };
 
 inline std::string_view name(Sampling sampling) { return sampling == Sampling::sobol ? "sobol" : "independent"; }

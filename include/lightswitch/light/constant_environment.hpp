@@ -1,6 +1,5 @@
 #pragma once
 
-#include <lightswitch/core/warp.hpp>
 #include <lightswitch/light/light.hpp>
 
 namespace lightswitch {
@@ -24,11 +23,22 @@ struct ConstantEnvironment {
                 .radiance = value,
                 .pdf = cosine_hemisphere_pdf(local.z),
                 .dirac = false,
-                .visibility = from.spawn(wi)};
+                .visibility = from.spawn(wi),
+                .spread = cosine_hemisphere_pdf(local.z).value / emission_pdf().value};
     }
 
     [[gnu::always_inline]] SolidAnglePdf pdf(const Vec3& normal, const Vec3& wi) const {
         return cosine_hemisphere_pdf(dot(normal, wi));
+    }
+
+    LightEmission emit(const Vec2& place, const Vec2& direction) const {
+        return {.ray = ray_into_scene(uniform_sphere(direction), place, scene_radius),
+                .weight = value / emission_pdf().value,
+                .pdf = emission_pdf()};
+    }
+    EmissionPdf emission_pdf() const { return uniform_disk_pdf(scene_radius) * uniform_sphere_pdf(); }
+    float spread(const SurfacePoint& at, const Vec3& wi, const Vec3&) const {
+        return pdf(at.facing_normal(), wi).value / emission_pdf().value;
     }
 };
 

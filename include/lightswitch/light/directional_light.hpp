@@ -15,8 +15,21 @@ struct DirectionalLight {
     double power() const { return double(luminance(irradiance)) * double(pi) * double(square(scene_radius)); }
 
     [[gnu::always_inline]] LightSample sample(const SurfacePoint& from, const Vec2&) const {
-        return {.wi = towards, .radiance = irradiance, .pdf = {1}, .dirac = true, .visibility = from.spawn(towards)};
+        return {.wi = towards,
+                .radiance = irradiance,
+                .pdf = {1},
+                .dirac = true,
+                .visibility = from.spawn(towards),
+                .spread = pi * square(scene_radius)};
     }
+
+    LightEmission emit(const Vec2& u, const Vec2&) const {
+        return {.ray = ray_into_scene(towards, u, scene_radius),
+                .weight = irradiance * (pi * square(scene_radius)),
+                .pdf = {uniform_disk_pdf(scene_radius).value},
+                .dirac = true};
+    }
+    float spread(const SurfacePoint&, const Vec3&, const Vec3&) const { return pi * square(scene_radius); }
 };
 
 }  // namespace lightswitch

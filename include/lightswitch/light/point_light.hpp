@@ -21,7 +21,18 @@ struct PointLight {
                 .radiance = intensity / distance2,
                 .pdf = {1},
                 .dirac = true,
-                .visibility = from.segment_to(position)};
+                .visibility = from.segment_to(position),
+                .spread = 4 * pi * distance2};
+    }
+
+    LightEmission emit(const Vec2&, const Vec2& u) const {
+        return {.ray = {.origin = position, .direction = uniform_sphere(u)},
+                .weight = intensity * (4 * pi),
+                .pdf = {uniform_sphere_pdf().value},
+                .dirac = true};
+    }
+    float spread(const SurfacePoint& at, const Vec3&, const Vec3&) const {
+        return 4 * pi * length_squared(position - at.position);
     }
 };
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <lightswitch/core/warp.hpp>
 #include <lightswitch/light/light.hpp>
 
 namespace lightswitch {
@@ -46,13 +45,28 @@ struct SphereLight {
                 .radiance = emission,
                 .pdf = uniform_cone_pdf(one_minus_cosine),
                 .dirac = false,
-                .visibility = from.segment_to(center + radius * normal, normal, offset)};
+                .visibility = from.segment_to(center + radius * normal, normal, offset),
+                .spread = pi * uniform_cone_pdf(one_minus_cosine).value / area_pdf().value};
     }
 
     [[gnu::always_inline]] SolidAnglePdf pdf(const Vec3& from, const Vec3& wi, const SurfacePoint& hit) const {
         const float distance2 = length_squared(center - from);
         if (!inward) return distance2 > square(radius) ? uniform_cone_pdf(cone(distance2)) : SolidAnglePdf{};
         return to_solid_angle(area_pdf(), length_squared(hit.position - from), std::abs(dot(wi, hit.normal)));
+    }
+
+    LightEmission emit(const Vec2& place, const Vec2& direction) const {
+        const Vec3 outward = uniform_sphere(place), normal = inward ? -outward : outward;
+        const Vec3 local = cosine_hemisphere(direction);
+        return {.ray = {.origin = center + radius * outward + offset * normal, .direction = Basis(normal).to_world(local)},
+                .weight = emission * (pi / area_pdf().value),
+                .pdf = emission_pdf(local.z),
+                .cosine = local.z};
+    }
+    EmissionPdf emission_pdf(float cosine) const { return area_pdf() * cosine_hemisphere_pdf(cosine); }
+    float spread(const SurfacePoint& at, const Vec3& wi, const Vec3& place) const {
+        if (inward) return pi * length_squared(place - at.position) * radius / std::abs(dot(wi, place - center));
+        return pi * pdf(at.position, wi, at).value / area_pdf().value;
     }
 
 private:
@@ -75,7 +89,8 @@ private:
                 .radiance = emission,
                 .pdf = to_solid_angle(area_pdf(), distance2, cosine),
                 .dirac = false,
-                .visibility = from.segment_to(center + radius * outward, outward, offset)};
+                .visibility = from.segment_to(center + radius * outward, outward, offset),
+                .spread = pi * distance2 / cosine};
     }
 };
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <lightswitch/core/warp.hpp>
 #include <lightswitch/light/light.hpp>
 
 namespace lightswitch {
@@ -33,12 +32,27 @@ struct TriangleLight {
                 .radiance = emission,
                 .pdf = to_solid_angle(density, distance2, cosine),
                 .dirac = false,
-                .visibility = from.segment_to(position, normal, offset)};
+                .visibility = from.segment_to(position, normal, offset),
+                .spread = pi * distance2 / cosine};
     }
 
     [[gnu::always_inline]] SolidAnglePdf pdf(const Vec3& from, const Vec3& wi, const SurfacePoint& hit) const {
         const float distance2 = length_squared(hit.position - from);
         return to_solid_angle(density, distance2, std::abs(dot(wi, hit.normal)));
+    }
+
+    LightEmission emit(const Vec2& place, const Vec2& direction) const {
+        const Vec2 b = uniform_triangle(place);
+        const Vec3 local = cosine_hemisphere(direction);
+        return {.ray = {.origin = corner + b.x * edge1 + b.y * edge2 + offset * normal,
+                        .direction = Basis(normal).to_world(local)},
+                .weight = emission * (pi / density.value),
+                .pdf = emission_pdf(local.z),
+                .cosine = local.z};
+    }
+    EmissionPdf emission_pdf(float cosine) const { return density * cosine_hemisphere_pdf(cosine); }
+    float spread(const SurfacePoint& at, const Vec3& wi, const Vec3& place) const {
+        return pi * length_squared(place - at.position) / std::abs(dot(wi, normal));
     }
 };
 

@@ -3,10 +3,14 @@
 // A method chosen at run time.
 
 #include <lightswitch/core/error.hpp>
+#include <lightswitch/method/bdpt.hpp>
+#include <lightswitch/method/light_tracer.hpp>
 #include <lightswitch/method/path_tracer.hpp>
 #include <lightswitch/method/path_tracer_nee.hpp>
 #include <lightswitch/method/phong.hpp>
+#include <lightswitch/method/photon_mapping.hpp>
 #include <lightswitch/method/silhouette.hpp>
+#include <lightswitch/method/vcm.hpp>
 #include <lightswitch/scene/any_scene.hpp>
 
 #include <string>
@@ -16,7 +20,7 @@
 namespace lightswitch {
 
 /// Any of the library's methods. One `std::visit` per render leads to code made for that method and scene type.
-using AnyMethod = std::variant<Silhouette, Phong, PathTracer, PathTracerNee>;
+using AnyMethod = std::variant<Silhouette, Phong, PathTracer, PathTracerNee, LightTracer, Bdpt, PhotonMapping, Vcm>;
 
 /// Calls `f(M{})` for every method of `AnyMethod` in turn, with its defaults.
 void for_each_method(auto&& f) {

@@ -11,7 +11,7 @@
 #include <lightswitch/scene/ray.hpp>
 
 #include <algorithm>
-#include <mutex>
+#include <concepts>
 #include <stop_token>
 #include <vector>
 
@@ -35,6 +35,9 @@ struct RenderCounts {
     std::uint64_t non_finite = 0;              ///< contributions that were replaced by black
     std::vector<NonFinite> first_non_finite;   ///< the first 16 of them, in the order of iteration and pixel
 };
+
+/// Light paths of `Frame::paths` with consecutive numbers from a multiple of this one on are traced in order by one thread.
+inline constexpr std::uint64_t paths_per_unit = 1024;
 
 namespace detail {
 
@@ -74,29 +77,60 @@ private:
 /// Collects the splats of one work unit.
 class Splatter {
 public:
-    Splatter(std::vector<Splat>& splats, detail::UnitReport& report, const Film& film, std::uint64_t iteration,
-             std::uint64_t seed)
-        : splats_(&splats), report_(&report), width_(film.width()), height_(film.height()), iteration_(iteration),
-          seed_(seed) {}
+    Splatter(std::vector<Splat>& splats, detail::UnitReport& report, const Film& film, const Filter& filter,
+             std::uint64_t iteration, std::uint64_t seed)
+        : splats_(&splats), report_(&report), width_(film.width()), height_(film.height()), filter_(filter),
+          iteration_(iteration), seed_(seed) {}
 
-    /// Adds `value` to the pixel that holds the point `at` (columns and rows from the top left corner of the film). Points off
-    /// the film are ignored; values that are not finite are counted and dropped.
+    /// Adds `value` at the point `at` (columns and rows from the top left corner of the film) to the pixels around it, by the weights
+    /// of the film's filter: with the box, to the pixel that holds the point. `value` is the integrand over the area of the film (in
+    /// pixels) divided by the density of `at`. What is off the film is ignored; what is not finite is counted and dropped.
     void splat(const Vec2& at, const Rgb& value) {
-        if (!(at.x >= 0 && at.y >= 0 && at.x < static_cast<float>(width_) && at.y < static_cast<float>(height_))) return;
-        const auto pixel = static_cast<std::uint32_t>(at.y) * static_cast<std::uint32_t>(width_) +
-                           static_cast<std::uint32_t>(at.x);
-        if (!is_finite(value)) {
-            report_->note({iteration_, seed_, pixel});
+        const bool finite = is_finite(value);
+        if (filter_.kind() == Filter::Kind::box) {
+            if (at.x >= 0 && at.y >= 0 && at.x < static_cast<float>(width_) && at.y < static_cast<float>(height_)) [[likely]]
+                add(static_cast<int>(at.x), static_cast<int>(at.y), value, finite);
+            else if (!(is_finite(at.x) && is_finite(at.y)))
+                add(0, 0, value, false);
             return;
         }
-        splats_->push_back({pixel, value});
+        if (!(is_finite(at.x) && is_finite(at.y))) return add(0, 0, value, false);
+        // Pixels whose centres are within the radius.
+        const float r = filter_.radius();
+        const auto first = [&](float x) { return static_cast<int>(std::ceil(std::max(x - r - 0.5f, 0.0f))); };
+        const auto last = [&](float x, int size) {
+            return static_cast<int>(std::floor(std::clamp(x + r - 0.5f, -1.0f, static_cast<float>(size - 1))));
+        };
+        const int x1 = last(at.x, width_), y1 = last(at.y, height_);
+        if (!(at.x - r < static_cast<float>(width_) && at.y - r < static_cast<float>(height_))) return;
+        for (int y = first(at.y); y <= y1; ++y)
+            for (int x = first(at.x); x <= x1; ++x) {
+                const float weight = filter_.pdf(at - Vec2(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f));
+                if (weight > 0) add(x, y, weight * value, finite);
+                if (!finite) return;
+            }
     }
 
 private:
+    void add(int x, int y, const Rgb& value, bool finite) {
+        const auto pixel = static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(width_) + static_cast<std::uint32_t>(x);
+        if (finite) [[likely]]
+            splats_->push_back({pixel, value});
+        else
+            report_->note({iteration_, seed_, pixel});
+    }
+
     std::vector<Splat>* splats_;
     detail::UnitReport* report_;
     int width_, height_;
+    Filter filter_;
     std::uint64_t iteration_, seed_;
+};
+
+/// What a method that wants more than a ray is told about the pixel at hand.
+struct PixelContext {
+    std::size_t index;   ///< row * width + column
+    Splatter& splatter;  ///< for contributions to other pixels
 };
 
 /// The view that a method has of a render: one iteration of it. Made by the loop.
@@ -105,8 +139,11 @@ class Frame {
 public:
     Frame(const SceneType& scene, Film& film, const E& executor, const Filter& filter, Sampling sampling, std::uint64_t seed,
           std::uint64_t iteration, std::stop_token stop, RenderCounts& counts)
-        : scene_(scene), film_(film), executor_(executor), filter_(filter), points_(sampling, seed, iteration), seed_(seed),
+        : scene_(scene), film_(film), executor_(executor), filter_(filter), sampling_(sampling), seed_(seed),
           iteration_(iteration), stop_(std::move(stop)), counts_(counts) {}
+
+    /// The iteration number of the frame that `start` is given: what it draws belongs to no iteration.
+    static constexpr std::uint64_t before_the_first = ~std::uint64_t{0};
 
     const SceneType& scene() const { return scene_; }
     int width() const { return film_.width(); }
@@ -117,24 +154,44 @@ public:
     bool stopped() const { return stop_.stop_requested(); }
 
     /// Calls `fn(ray, sampler)` once for every pixel and adds the `Rgb` that it returns to the pixel. The ray comes from the
-    /// camera through a point of the pixel's filter.
-    void pixels(const auto& fn) {
+    /// camera through a point of the pixel's filter. `fn` may take a third argument, the `PixelContext`, through which it can splat to
+    /// other pixels.
+    ///
+    /// Every call of `pixels` or `paths` in an iteration is given random numbers of its own, independent of the other calls'.
+    template <class F>
+    void pixels(const F& fn) {
+        const IterationPoints points = points_of_pass(2 * pixel_passes_++);
         const int columns = (width() + tile - 1) / tile, rows = (height() + tile - 1) / tile;
-        std::vector<detail::UnitReport> reports(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-        executor_.for_each(reports.size(), [&](std::size_t unit) {
-            if (stopped()) return;
+        const auto work = [&](std::uint64_t unit, Splatter& splatter, detail::UnitReport& report) {
             const int x0 = static_cast<int>(unit) % columns * tile, y0 = static_cast<int>(unit) / columns * tile;
-            const detail::UnitScope scope(reports[unit]);
-            sample_tile(x0, y0, fn, reports[unit]);
-        });
-        gather(reports);
+            sample_tile(points, x0, y0, fn, splatter, report);
+        };
+        run_units(static_cast<std::uint64_t>(columns) * static_cast<std::uint64_t>(rows), work);
     }
 
     /// Calls `fn(index, sampler, splatter)` for every index in [0, n): typically one light path each. Splats are added to the
-    /// film in the order of the index, whatever the number of threads.
-    void paths(std::uint64_t n, const auto& fn) {
+    /// film in the order of the index, whatever the number of threads. `per_unit` consecutive indices are the share of work that a
+    /// thread takes.
+    void paths(std::uint64_t n, const auto& fn, std::uint64_t per_unit = paths_per_unit) {
         counts_.paths += n;
-        const std::uint64_t units = (n + paths_per_unit - 1) / paths_per_unit;
+        const IterationPoints points = points_of_pass(2 * path_passes_++ + 1);
+        run_units((n + per_unit - 1) / per_unit, [&](std::uint64_t unit, Splatter& splatter, detail::UnitReport&) {
+            trace_paths(points, unit * per_unit, std::min((unit + 1) * per_unit, n), fn, splatter);
+        });
+    }
+
+private:
+    static constexpr int tile = 16;
+    static constexpr std::uint64_t units_per_wave = 256;  // bounds the memory that splats take before they reach the film
+    static constexpr std::uint32_t pixel_stream = 0, path_stream = 1;
+
+    /// Pass 0 is the first call of `pixels`, whatever else a method does: so all methods see the same camera rays.
+    IterationPoints points_of_pass(std::uint64_t pass) const {
+        return {sampling_, pass == 0 ? seed_ : detail::mix64(seed_ + pass * 0x9e3779b97f4a7c15u), iteration_};
+    }
+
+    /// Runs `work(unit, splatter, report)` for every unit in parallel and then folds, in the order of the units, what they leave.
+    void run_units(std::uint64_t units, const auto& work) {
         for (std::uint64_t first = 0; first < units && !stopped(); first += units_per_wave) {
             const std::size_t wave = static_cast<std::size_t>(std::min<std::uint64_t>(units_per_wave, units - first));
             std::vector<detail::UnitReport> reports(wave);
@@ -142,9 +199,8 @@ public:
             executor_.for_each(wave, [&](std::size_t unit) {
                 if (stopped()) return;
                 const detail::UnitScope scope(reports[unit]);
-                Splatter splatter(splats[unit], reports[unit], film_, iteration_, seed_);
-                const std::uint64_t begin = (first + unit) * paths_per_unit;
-                trace_paths(begin, std::min(begin + paths_per_unit, n), fn, splatter);
+                Splatter splatter(splats[unit], reports[unit], film_, filter_, iteration_, seed_);
+                work(first + unit, splatter, reports[unit]);
             });
             for (const auto& unit : splats) {
                 film_.add(unit);
@@ -154,33 +210,36 @@ public:
         }
     }
 
-private:
-    static constexpr int tile = 16;
-    static constexpr std::uint64_t paths_per_unit = 1024, units_per_wave = 256;
-    static constexpr std::uint32_t pixel_stream = 0, path_stream = 1;
-
     // The two inner loops stand alone, so that their machine code can be found and checked (tests/structure/hot_path).
-    [[gnu::noinline]] void sample_tile(int x0, int y0, const auto& fn, detail::UnitReport& report) {
+    [[gnu::noinline]] void sample_tile(const IterationPoints& points, int x0, int y0, const auto& fn, Splatter& splatter,
+                                       detail::UnitReport& report) {
         for (int y = y0; y < std::min(y0 + tile, height()); ++y)
-            for (int x = x0; x < std::min(x0 + tile, width()); ++x) sample_pixel(x, y, fn, report);
+            for (int x = x0; x < std::min(x0 + tile, width()); ++x) sample_pixel(points, x, y, fn, splatter, report);
     }
-    [[gnu::noinline]] void trace_paths(std::uint64_t begin, std::uint64_t end, const auto& fn, Splatter& splatter) {
+    [[gnu::noinline]] void trace_paths(const IterationPoints& points, std::uint64_t begin, std::uint64_t end, const auto& fn,
+                                       Splatter& splatter) {
         for (std::uint64_t i = begin; i < end; ++i) {
-            Sampler sampler(points_, path_stream, i);
+            Sampler sampler(points, path_stream, i);
             fn(i, sampler, splatter);
         }
     }
 
-    void sample_pixel(int x, int y, const auto& fn, detail::UnitReport& report) {
+    template <class F>
+    void sample_pixel(const IterationPoints& points, int x, int y, const F& fn, Splatter& splatter,
+                      detail::UnitReport& report) {
         const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(width()) +
                                   static_cast<std::size_t>(x);
-        Sampler sampler(points_, pixel_stream, pixel);
+        Sampler sampler(points, pixel_stream, pixel);
         const Vec2 u = sampler.next_2d();
         const Vec2 offset = filter_.kind() == Filter::Kind::box ? u - 0.5f : filter_.sample(u);
         const Vec2 position(static_cast<float>(x) + 0.5f + offset.x, static_cast<float>(y) + 0.5f + offset.y);
         const Camera& camera = scene_.camera();
         const Ray ray = camera.ray(position, camera.has_lens() ? sampler.next_2d() : Vec2(0.5f));
-        const Rgb value = fn(ray, sampler);
+        Rgb value;
+        if constexpr (std::invocable<const F&, const Ray&, Sampler&, const PixelContext&>)
+            value = fn(ray, sampler, PixelContext{pixel, splatter});
+        else
+            value = fn(ray, sampler);
         if (is_finite(value)) [[likely]] {
             film_.slot(pixel) += value;
         } else {
@@ -206,8 +265,9 @@ private:
     Film& film_;
     const E& executor_;
     Filter filter_;
-    IterationPoints points_;
+    Sampling sampling_;
     std::uint64_t seed_, iteration_;
+    std::uint64_t pixel_passes_ = 0, path_passes_ = 0;  // how many calls of `pixels` and `paths` there were
     std::stop_token stop_;
     RenderCounts& counts_;
 };

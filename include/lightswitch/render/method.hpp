@@ -41,8 +41,11 @@ concept PixelMethod =
         { method.radiance(scene, ray, sampler) } -> std::same_as<Rgb>;
     };
 
-/// A method that estimates the whole image at once: `start(frame)` gives the state that it keeps between iterations (on one
-/// thread), and `iterate(frame, state)` makes one estimate through `frame.pixels` and `frame.paths`.
+/// A method that estimates the whole image at once: `start(frame)` gives the state that it keeps between iterations (what it adds
+/// to the film is forgotten), and `iterate(frame, state)` makes one estimate through `frame.pixels` and `frame.paths`. Both are
+/// called on one thread. An iteration that is broken off, by an exception or because `frame.stopped()`, must leave the state such
+/// that it can be made again. A state may have `statistics()`, which gives pairs of a name (in lower case, with underscores) and a
+/// number for `RenderStatistics::of_method`.
 template <class M, class FrameType>
 concept ImageMethod = NamedMethod<M> && requires(const M method, FrameType& frame) {
     { method.start(frame) };

@@ -45,6 +45,7 @@ struct RenderStatistics {
     int threads = 0;
     bool cancelled = false;
     RenderCounts counts;
+    std::vector<std::pair<std::string, double>> of_method;  ///< what the method's state says, by name
 };
 
 namespace detail {
@@ -88,8 +89,9 @@ public:
         : scene_(scene), method_(method), settings_(settings), executor_(std::move(executor)),
           film_(scene.camera().width(), scene.camera().height()) {
         statistics_.threads = executor_.threads();
-        auto first = frame();
-        state_.emplace(image_method().start(first));
+        auto preparation = frame(FrameType::before_the_first);
+        state_.emplace(image_method().start(preparation));
+        film_.discard(executor_);
     }
 
     /// Makes iterations until the budget is spent or the stop token asks for an end. Seconds count from this call; samples and
@@ -102,7 +104,7 @@ public:
         const std::uint64_t already = film_.iterations();
         double fraction = 0;
         while (!settings_.stop.stop_requested() && !(budget.samples > 0 && film_.iterations() >= wanted(budget))) {
-            auto current = frame();
+            auto current = frame(film_.iterations());
             try {
                 image_method().iterate(current, *state_);
             } catch (...) {
@@ -128,6 +130,7 @@ public:
         }
         statistics_.cancelled = settings_.stop.stop_requested();
         statistics_.seconds += std::chrono::duration<double>(Clock::now() - begin).count();
+        if constexpr (requires { state_->statistics(); }) statistics_.of_method = state_->statistics();
     }
 
     const Film& film() const { return film_; }
@@ -151,8 +154,8 @@ private:
 
     decltype(auto) image_method() const { return detail::as_image_method<FrameType, SceneType>(method_); }
 
-    FrameType frame() {
-        return {scene_, film_, executor_, scene_.film().filter, settings_.sampling, settings_.seed, film_.iterations(),
+    FrameType frame(std::uint64_t iteration) {
+        return {scene_, film_, executor_, scene_.film().filter, settings_.sampling, settings_.seed, iteration,
                 settings_.stop, statistics_.counts};
     }
 

@@ -2,10 +2,12 @@
 
 // The camera of a built scene.
 
+#include <lightswitch/core/maybe.hpp>
 #include <lightswitch/core/warp.hpp>
 #include <lightswitch/scene/description.hpp>
 #include <lightswitch/scene/ray.hpp>
 #include <lightswitch/scene/render_space.hpp>
+#include <lightswitch/scene/surface_point.hpp>
 
 namespace lightswitch {
 
@@ -42,6 +44,48 @@ public:
                 .far = per_axis * static_cast<float>(far_)};
     }
 
+    /// Where on the film a point is seen.
+    struct View {
+        Vec2 pixel;          ///< columns and rows from the top left corner; may be off the film
+        Vec3 wi;             ///< unit, from the point to the lens
+        double density = 0;  ///< see `density`
+        Ray visibility;      ///< the ray that must be free
+    };
+
+    /// How the camera sees `point` through the place of the lens that `lens` in [0,1)^2 selects (see `ray`), or nothing when that
+    /// is behind the camera or outside its clipping planes. The radiance that leaves the point towards the lens, times the cosine
+    /// there, times `View::density`, is the integrand over the area of the film in pixels.
+    Maybe<View> view(const SurfacePoint& point, const Vec2& lens) const {
+        DVec3 origin = position_, shift(0);
+        if (lens_radius_ > 0) {
+            const Vec2 on_lens = concentric_disk(lens);
+            shift = lens_radius_ * (double(on_lens.x) * left_ + double(on_lens.y) * up_);
+            origin += shift;
+        }
+        const DVec3 from_lens = DVec3(point.position) - origin;
+        const double depth = glm::dot(from_lens, forward_);
+        if (!(depth > 0 && depth >= near_ && depth <= far_)) return {};
+        DVec3 along = from_lens / depth;
+        const double per_axis = glm::length(along);
+        const Vec3 wi(-along / per_axis);
+        if (lens_radius_ > 0) along += shift / focus_;
+        const DVec3 in_plane = along - corner_exact_;
+        return View{.pixel = Vec2(DVec2(glm::dot(in_plane, step_x_exact_) / glm::dot(step_x_exact_, step_x_exact_),
+                                        glm::dot(in_plane, step_y_exact_) / glm::dot(step_y_exact_, step_y_exact_))),
+                    .wi = wi,
+                    .density = density(point.position, wi),
+                    .visibility = point.spawn(wi, static_cast<float>((depth - near_) * per_axis))};
+    }
+
+    /// Pixels per area across the ray: how much of the film a small surface at `position` fills that is seen along `direction`
+    /// (unit, either sense) and faces it. Also the density, per such area, of the points that the rays of one pixel meet there.
+    double density(const Vec3& position, const Vec3& direction) const {
+        const double cosine = std::abs(glm::dot(DVec3(direction), forward_));
+        const double depth = glm::dot(DVec3(position) - position_, forward_);
+        // The film at distance 1 is tilted against the ray by one cosine, and two make it 1 / cosine away.
+        return 1 / (pixel_area_ * cosine * depth * depth);
+    }
+
     bool has_lens() const { return lens_radius_ > 0; }
     int width() const { return width_; }
     int height() const { return height_; }
@@ -62,6 +106,7 @@ private:
         corner_exact_ = forward_ + half_width * left_ + half_height * up_;
         step_x_exact_ = left_ * (-2 * half_width / film.width);
         step_y_exact_ = up_ * (-2 * half_height / film.height);
+        pixel_area_ = glm::length(step_x_exact_) * glm::length(step_y_exact_);
         corner_ = Vec3(corner_exact_);
         step_x_ = Vec3(step_x_exact_);
         step_y_ = Vec3(step_y_exact_);
@@ -97,6 +142,7 @@ private:
     RenderSpace space_;
     DVec3 position_, left_, up_, forward_, corner_exact_, step_x_exact_, step_y_exact_;
     double lens_radius_, focus_, near_, far_;
+    double pixel_area_ = 0;  // of the film at distance 1
 };
 
 }  // namespace lightswitch

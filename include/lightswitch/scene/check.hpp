@@ -111,8 +111,13 @@ void check(const SceneDescription<Material>& scene) {
         std::visit([&](const auto& geometry) { check(geometry, shape.origin); }, shape.geometry);
         if (shape.emission) check_radiance(*shape.emission, shape.origin, "the light's radiance");
     }
-    for (const auto& source : scene.sources)
+    bool has_environment = false;
+    for (const auto& source : scene.sources) {
         std::visit([&](const auto& s) { check(s, source.origin); }, source.source);
+        if (!std::holds_alternative<EnvironmentSource>(source.source)) continue;
+        if (has_environment) fail(source.origin, "the scene has a second environment: give one with the sum of their radiances");
+        has_environment = true;
+    }
 }
 
 /// Corners of the box around all shapes; both at the camera when there are none.

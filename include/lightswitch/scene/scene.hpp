@@ -3,91 +3,19 @@
 // The built scene: what rays meet, what surfaces are made of, and what shines. Its type says which surface models and which
 // lights it can hold, so that code is compiled only for what is there.
 
-#include <lightswitch/bsdf/bsdf.hpp>
 #include <lightswitch/core/dispatch.hpp>
 #include <lightswitch/core/maybe.hpp>
-#include <lightswitch/core/table.hpp>
 #include <lightswitch/embree/accelerator.hpp>
 #include <lightswitch/light/light.hpp>
 #include <lightswitch/scene/camera.hpp>
+#include <lightswitch/scene/scene_data.hpp>
 #include <lightswitch/scene/surface_point.hpp>
 
-#include <optional>
 #include <string>
 #include <tuple>
 #include <vector>
 
 namespace lightswitch {
-
-/// The surface models of a scene.
-template <Bsdf... B>
-struct Bsdfs {};
-/// The kinds of light of a scene.
-template <Light... L>
-struct Lights {};
-
-/// One luminous shape or source, summed up for methods that treat it as one light.
-struct Emitter {
-    enum class Kind { environment, directional, point, surface };
-
-    Kind kind = Kind::surface;
-    Rgb strength{0};       ///< radiance; of a point its intensity (render space), of a directional source its irradiance
-    Vec3 position{0};      ///< point, or centroid of a surface (render space)
-    Vec3 direction{0};     ///< unit, towards a directional source
-    Vec3 vector_area{0};   ///< of a surface: sum of normal * area (render space)
-    float area = 0;        ///< of a surface
-    std::size_t first_light = 0, light_count = 0;  ///< numbers of the lights that belong to it
-};
-
-/// What a scene is made of, in numbers.
-struct SceneStatistics {
-    std::size_t triangles = 0, spheres = 0, lights = 0, degenerate_triangles = 0;
-    std::int64_t embree_bytes = 0, scene_bytes = 0;
-    double embree_build_seconds = 0, build_seconds = 0;
-    bool robust = false;  ///< whether Embree uses its watertight intersection test
-};
-
-namespace detail {
-
-/// What a hit on a triangle mesh needs beyond what Embree says. There is one per mesh and nothing per triangle, so that a hit
-/// costs no memory access that is not in a cache already.
-struct MeshRecord {
-    TypedIndex material;
-    TypedIndex first_light;         ///< of the mesh's triangles, in their order; empty when it does not shine
-    float intersection_error;       ///< see `SceneAssembly::intersection_error`
-    std::uint32_t shading_normals;  ///< where its triples of normals begin, or `flat`
-    static constexpr std::uint32_t flat = 0xffffffffu;
-};
-
-struct SphereRecord {
-    Vec3 center;
-    float radius;
-    float offset;
-    float side;  ///< +1 when the front is outside, -1 when inside
-    TypedIndex material;
-    TypedIndex light;
-};
-
-template <class B, class L>
-struct SceneData;
-
-template <class... B, class... L>
-struct SceneData<Bsdfs<B...>, Lights<L...>> {
-    std::string name;
-    std::string camera_id;
-    RenderSpace space;
-    FilmDescription film;
-    std::vector<MeshRecord> meshes;  ///< by Embree's geometry number; the spheres come after them
-    std::vector<std::array<Vec3, 3>> shading_normals;
-    std::vector<SphereRecord> spheres;
-    std::tuple<std::vector<B>...> bsdfs;
-    std::tuple<std::vector<L>...> lights;
-    DiscreteDistribution light_choice;  ///< over light numbers, see `Scene::light_number`
-    std::vector<Emitter> emitters;
-    SceneStatistics statistics;
-};
-
-}  // namespace detail
 
 template <class BsdfList, class LightList>
 class Scene;
@@ -184,6 +112,52 @@ public:
             sum.value += light.pdf(normal, wi).value * data_.light_choice.probability(number);
         });
         return sum;
+    }
+
+    /// A ray that leaves a light: `choice` in [0, 1) selects the light as in `sample_light`, `place` and `direction` the ray. The
+    /// weight and the density include the selection. Black when there is no light.
+    [[gnu::always_inline]] LightEmission sample_emission(float choice, const Vec2& place, const Vec2& direction) const {
+        static_assert((EmittingLight<L> && ...), "methods that trace light need lights with `emit` and `spread` (EmittingLight)");
+        if (data_.light_choice.empty()) return {};
+        const std::size_t number = data_.light_choice.sample(choice);
+        const float probability = data_.light_choice.probability(number);
+        const TypedIndex light = locate(number);
+        LightEmission emission = with_light(light, [&](const auto& l) __attribute__((always_inline)) { return l.emit(place, direction); });
+        emission.weight /= probability;
+        emission.pdf = emission.pdf * probability;
+        emission.light = light;
+        return emission;
+    }
+
+    /// The density with which `sample_emission` starts a path at `hit`, a point on a light, along `direction`.
+    [[gnu::always_inline]] EmissionPdf emission_pdf(const SurfacePoint& hit, const Vec3& direction) const {
+        if (data_.light_choice.empty()) return {};
+        const EmissionPdf pdf = with_light(hit.light, [&](const auto& light) __attribute__((always_inline)) {
+            if constexpr (is_area<decltype(light)>)
+                return light.emission_pdf(dot(direction, hit.normal));
+            else
+                return EmissionPdf{};
+        });
+        return pdf * data_.light_choice.probability(light_number(hit.light));
+    }
+
+    /// The density with which `sample_emission` starts a path that arrives from beyond the scene in any direction.
+    EmissionPdf environment_emission_pdf() const {
+        EmissionPdf sum;
+        if (data_.light_choice.empty()) return sum;
+        for_each_environment([&](std::size_t number, const auto& light) {
+            sum.value += light.emission_pdf().value * data_.light_choice.probability(number);
+        });
+        return sum;
+    }
+
+    /// `EmittingLight::spread` of that light.
+    [[gnu::always_inline]] float spread(TypedIndex light, const SurfacePoint& at, const Vec3& wi, const Vec3& place) const {
+        return with_light(light, [&](const auto& l) __attribute__((always_inline)) { return l.spread(at, wi, place); });
+    }
+    /// Whether that light is beyond the scene.
+    [[gnu::always_inline]] bool infinite(TypedIndex light) const {
+        return with_light(light, [](const auto& l) __attribute__((always_inline)) { return std::remove_cvref_t<decltype(l)>::infinite; });
     }
 
     /// Lights are numbered by kind in the order of the list, then by position.

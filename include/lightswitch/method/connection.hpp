@@ -1,0 +1,141 @@
+#pragma once
+
+// The ways in which a path from the camera and one from a light become a whole path: strategies, in Veach's words (s, t) with s
+// vertices from the light and t from the camera.
+
+#include <lightswitch/method/subpath.hpp>
+
+#include <span>
+
+namespace lightswitch {
+
+/// What a strategy contributes by one path.
+struct Contribution {
+    Rgb value{0};      ///< the integrand over the density, as if there were no other strategy
+    float weight = 0;  ///< by multiple importance sampling
+};
+
+/// 1 / (1 + what the strategies with fewer light vertices, and those with more of them, count beside this one).
+inline float strategy_weight(double fewer, double more) { return static_cast<float>(1 / (1 + fewer + more)); }
+
+/// s = 0: the camera path has met a light.
+inline Contribution meet_light(const auto& scene, const CameraSubpath& path) {
+    const PathVertex& z = path.vertex();
+    if (!z.point.light) return {};
+    const Rgb radiance = scene.emitted(z.point, z.point.wo);
+    if (is_black(radiance)) return {};
+    double more = 0;
+    if (z.edges > 1) {
+        const float distance2 = square(z.point.distance), cosine = std::abs(dot(z.point.wo, z.point.normal));
+        const AreaPdf direct = to_area(scene.light_pdf(path.previous(), -z.point.wo, z.point), distance2, cosine);
+        more = heuristic(direct.value) * z.weights.last +
+               heuristic(scene.emission_pdf(z.point, z.point.wo).value) * z.weights.connections;
+    }
+    return {z.throughput * radiance, strategy_weight(0, more)};
+}
+
+/// s = 0: the camera path has left the scene.
+inline Contribution meet_environment(const auto& scene, const CameraSubpath& path) {
+    const Vec3 direction = path.ray().direction;
+    const Rgb radiance = scene.environment(direction);
+    if (is_black(radiance)) return {};
+    double more = 0;
+    if (path.vertex().edges > 1) {
+        // Places beyond the scene are directions: the weights have not been turned to area.
+        const PartialWeights& w = path.vertex().weights;
+        more = heuristic(scene.environment_pdf(path.previous_normal(), direction).value) * w.last +
+               heuristic(scene.environment_emission_pdf().value) * w.connections;
+    }
+    return {path.carried() * radiance, strategy_weight(0, more)};
+}
+
+/// s = 1: a point of a light, chosen from the vertex of the camera path (next event estimation).
+[[gnu::always_inline]] inline Contribution connect_to_light(const auto& scene, const PathVertex& z, float choice,
+                                                            const Vec2& place, const MergeWeights& merge_weights) {
+    const LightSample light = scene.sample_light(z.point, choice, place);
+    if (!(light.pdf.value > 0)) return {};
+    const Turn at_camera = turn<Transport::radiance>(scene, z.point, light.wi);
+    if (is_black(at_camera.value) || scene.occluded(light.visibility)) return {};
+    const double cosine = std::abs(dot(z.point.normal, light.wi));
+    const double fewer = light.dirac ? 0 : heuristic(double(at_camera.pdf.value) / double(light.pdf.value));
+    const double more = heuristic(cosine / double(light.spread)) *
+                        (merge_weights.merge + z.weights.last + z.weights.connections * heuristic(at_camera.reverse_pdf.value));
+    return {z.throughput * at_camera.value * (light.radiance / light.pdf.value), strategy_weight(fewer, more)};
+}
+
+/// t = 1: the vertex of a light path, seen by the camera. `view` must be what the camera says of it.
+[[gnu::always_inline]] inline Contribution connect_to_camera(const auto& scene, const PathVertex& y, const Camera::View& view,
+                                                             double light_paths, const MergeWeights& merge_weights) {
+    const Turn at_light = turn<Transport::importance>(scene, y.point, view.wi);
+    if (is_black(at_light.value) || scene.occluded(view.visibility)) return {};
+    const double cosine = std::abs(dot(y.point.normal, view.wi));
+    const double fewer =
+        heuristic(view.density * cosine / light_paths) *
+        (merge_weights.merge + y.weights.last + y.weights.connections * heuristic(at_light.reverse_pdf.value));
+    return {y.throughput * at_light.value * static_cast<float>(view.density / light_paths), strategy_weight(fewer, 0)};
+}
+
+/// s, t >= 2: a vertex of each path.
+[[gnu::always_inline]] inline Contribution connect(const auto& scene, const PathVertex& y, const PathVertex& z,
+                                                   const MergeWeights& merge_weights) {
+    const Vec3 to_light = y.point.position - z.point.position;
+    const double distance2 = length_squared(to_light);
+    if (!(distance2 > 0)) return {};
+    const Vec3 wi = to_light * static_cast<float>(1 / std::sqrt(distance2));
+    const Turn at_camera = turn<Transport::radiance>(scene, z.point, wi);
+    if (is_black(at_camera.value)) return {};
+    const Turn at_light = turn<Transport::importance>(scene, y.point, -wi);
+    if (is_black(at_light.value)) return {};
+    if (scene.occluded(z.point.segment_to(y.point.position, y.point.normal, y.point.offset))) return {};
+    const double cosine_z = std::abs(dot(z.point.normal, wi)), cosine_y = std::abs(dot(y.point.normal, wi));
+    const double fewer =
+        heuristic(at_camera.pdf.value * cosine_y / distance2) *
+        (merge_weights.merge + y.weights.last + y.weights.connections * heuristic(at_light.reverse_pdf.value));
+    const double more =
+        heuristic(at_light.pdf.value * cosine_z / distance2) *
+        (merge_weights.merge + z.weights.last + z.weights.connections * heuristic(at_camera.reverse_pdf.value));
+    return {z.throughput * at_camera.value * at_light.value * y.throughput * static_cast<float>(1 / distance2),
+            strategy_weight(fewer, more)};
+}
+
+/// Traces a path from a light and splats what the camera sees of it: `splatter` gets `count(contribution, s, t)`. Calls `visit(vertex)`
+/// at each vertex to which a camera path can connect.
+void splat_light_subpath(const auto& scene, auto& sampler, auto& splatter, const PathLength& length, double light_paths,
+                         const MergeWeights& merge_weights, const auto& count, const auto& visit) {
+    const Camera& camera = scene.camera();
+    trace_light_subpath(scene, sampler, length, merge_weights, [&](const PathVertex& y) {
+        visit(y);
+        const auto view = camera.view(y.point, camera.has_lens() ? sampler.next_2d() : Vec2(0.5f));
+        if (view)
+            splatter.splat(view->pixel,
+                           count(connect_to_camera(scene, y, *view, light_paths, merge_weights), y.edges + 1, 1));
+    });
+}
+
+/// Traces the path from the camera that `ray` starts, and returns the sum of `count(contribution, s, t)` over all ways to join it
+/// with the lights and with the vertices of `light_path`, and of `at_vertex(z)` at each vertex where something can be joined.
+Rgb gather_camera_subpath(const auto& scene, const Ray& ray, auto& sampler, std::span<const PathVertex> light_path,
+                          const PathLength& length, double light_paths, const MergeWeights& merge_weights, const auto& count,
+                          const auto& at_vertex) {
+    Rgb sum(0);
+    CameraSubpath path(ray, light_paths, merge_weights);
+    const PathVertex& z = path.vertex();
+    for (;;) {
+        if (!path.advance(scene)) return sum + count(meet_environment(scene, path), 0, z.edges + 1);
+        sum += count(meet_light(scene, path), 0, z.edges + 1);
+        if (z.edges == length.max_depth) return sum;
+        const Vec2 direction = sampler.next_2d(), choices = sampler.next_2d(), on_light = sampler.next_2d();
+        if (connectable(scene, z.point)) {
+            // One number chooses the light and the lobe: they enter different terms of the sum.
+            sum += count(connect_to_light(scene, z, choices.x, on_light, merge_weights), 1, z.edges + 1);
+            for (const PathVertex& y : light_path) {
+                if (length.max_depth >= 0 && y.edges + 1 + z.edges > length.max_depth) break;
+                sum += count(connect(scene, y, z, merge_weights), y.edges + 1, z.edges + 1);
+            }
+            sum += at_vertex(z);
+        }
+        if (!path.scatter(scene, direction, choices, length.rr_depth)) return sum;
+    }
+}
+
+}  // namespace lightswitch

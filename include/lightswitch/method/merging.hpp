@@ -1,0 +1,63 @@
+#pragma once
+
+// Density estimation from light path vertices nearby: what photon mapping and vertex merging share.
+
+#include <lightswitch/method/connection.hpp>
+
+#include <algorithm>
+#include <vector>
+
+namespace lightswitch {
+
+/// The radius within which light is gathered, one for the whole image. It shrinks from iteration to iteration, slowly enough that
+/// noise vanishes and fast enough that bias does (Knaus and Zwicker, "Progressive Photon Mapping: A Probabilistic Approach", 2011).
+struct MergeRadius {
+    float pixels = 1;       ///< of the first iteration, in widths of a pixel where the camera sees the scene (median over the image)
+    float alpha = 2 / 3.f;  ///< in (0, 1): the area falls as iterations^(alpha - 1), so bias does, and the variance as iterations^-alpha
+
+    /// In render space. `footprint` is as from `pixel_footprint`.
+    float at(std::uint64_t iteration, double footprint) const {
+        return static_cast<float>(pixels * footprint * std::pow(double(iteration + 1), (double(alpha) - 1) / 2));
+    }
+};
+
+/// The width of a pixel where the camera sees the scene, in render space: the median over a grid of rays. If they meet nothing, what
+/// a pixel would be that had the scene's size as its share.
+double pixel_footprint(const auto& scene) {
+    constexpr int side = 64;
+    const Camera& camera = scene.camera();
+    std::vector<double> widths;
+    for (int i = 0; i < side * side; ++i) {
+        const Vec2 at((static_cast<float>(i % side) + 0.5f) / side, (static_cast<float>(i / side) + 0.5f) / side);
+        const Ray ray = camera.ray(at * Vec2(camera.width(), camera.height()), Vec2(0.5f));
+        if (const auto hit = scene.intersect(ray))
+            widths.push_back(1 / std::sqrt(camera.density(hit->position, ray.direction)));
+    }
+    if (widths.empty()) return 2.0 / std::max(camera.width(), camera.height());
+    const auto middle = widths.begin() + std::ptrdiff_t(widths.size() / 2);
+    std::nth_element(widths.begin(), middle, widths.end());
+    return *middle;
+}
+
+/// How merging within that radius weighs against connecting, and 0 for a radius of 0, which means no merging.
+inline MergeWeights merge_weights(double light_paths, double radius) {
+    if (!(radius > 0)) return {};
+    const double merges = light_paths * double(pi) * radius * radius;
+    return {.merge = heuristic(merges), .connect = heuristic(1 / merges)};
+}
+
+/// The light that arrived at `y`, taken as if it had arrived at the vertex `z` of a camera path. `merges` is light paths * pi *
+/// radius^2, by which the sum over all vertices within the radius is divided.
+[[gnu::always_inline]] inline Contribution merge(const auto& scene, const PathVertex& y, const PathVertex& z, double merges,
+                                                 const MergeWeights& weights) {
+    const Turn at = turn<Transport::radiance>(scene, z.point, y.point.wo);
+    // Power was spread over the true surface, and counts by the cosine to the shading normal.
+    const float cosine = std::abs(dot(z.point.normal, y.point.wo));
+    if (is_black(at.value) || !(cosine > 0)) return {};
+    const double fewer = y.weights.last * weights.connect + y.weights.merges * heuristic(at.pdf.value);
+    const double more = z.weights.last * weights.connect + z.weights.merges * heuristic(at.reverse_pdf.value);
+    return {z.throughput * at.value * y.throughput * static_cast<float>(1 / (cosine * merges)),
+            strategy_weight(fewer, more)};
+}
+
+}  // namespace lightswitch

@@ -1,0 +1,141 @@
+#pragma once
+
+#include <lightswitch/method/hash_grid.hpp>
+#include <lightswitch/method/merging.hpp>
+#include <lightswitch/method/path_records.hpp>
+#include <lightswitch/render/frame.hpp>
+#include <lightswitch/render/method.hpp>
+
+namespace lightswitch {
+
+/// Light that has arrived at a surface, in render space.
+struct Photon {
+    Vec3 position;
+    Vec3 from;            ///< unit, where the light came from
+    Rgb power;
+    std::uint32_t edges;  ///< segments of its path from the light
+};
+
+/// Photon mapping (Jensen 1996), progressive (Knaus and Zwicker 2011): light paths leave photons where they meet surfaces that are not
+/// specular; paths from the camera go on to the first such surface and gather the photons around. Every iteration has photons of its
+/// own and a smaller radius, so that the mean over the iterations converges to the exact image.
+struct PhotonMapping {
+    static constexpr std::string_view name = "photon";
+    static constexpr Kind kind = Kind::consistent;
+
+    int max_depth = PathLength{}.max_depth;  ///< see `PathLength`
+    int rr_depth = PathLength{}.rr_depth;
+    double paths_per_pixel = 1;  ///< light paths of an iteration, over the number of pixels; at least one path is traced
+    MergeRadius radius = {.pixels = 2};
+    bool final_gather = false;  ///< one more bounce before photons are gathered, and direct light by next event estimation
+
+    class State {
+    public:
+        /// Of the last iteration.
+        std::vector<std::pair<std::string, double>> statistics() const {
+            return {{"photons", double(map.size())},
+                    {"photon_map_bytes", double(map.bytes())},
+                    {"radius_pixels", double(map.radius()) / footprint}};
+        }
+
+    private:
+        friend PhotonMapping;
+        double footprint = 0;
+        PathRecords<Photon, paths_per_unit> paths;
+        std::vector<Photon> photons;
+        HashGrid<Photon> map;
+    };
+
+    State start(auto& frame) const {
+        State state;
+        state.footprint = pixel_footprint(frame.scene());
+        return state;
+    }
+
+    void iterate(auto& frame, State& state) const {
+        if (max_depth == 0) return;
+        const auto& scene = frame.scene();
+        const double wanted = paths_per_pixel * frame.width() * frame.height();
+        const auto light_paths = static_cast<std::uint64_t>(std::max(wanted, 1.0));
+        state.paths.reset(light_paths);
+        frame.paths(light_paths, [&](std::uint64_t path, auto& sampler, auto&) {
+            state.paths.start(path);
+            trace_light_subpath(scene, sampler, {max_depth, rr_depth}, {}, [&](const PathVertex& y) {
+                state.paths.push(path, {y.point.position, y.point.wo, y.throughput, static_cast<std::uint32_t>(y.edges)});
+            });
+        });
+        if (frame.stopped()) return;
+        state.paths.list(state.photons, frame.executor(), [](const Photon& photon) { return photon; });
+        state.map.build(state.photons, radius.at(frame.iteration(), state.footprint), frame.executor());
+        frame.pixels([&](const Ray& ray, auto& sampler) {
+            return radiance(scene, ray, sampler, state.map, 1 / static_cast<float>(light_paths));
+        });
+    }
+
+private:
+    Rgb radiance(const auto& scene, Ray ray, auto& sampler, const HashGrid<Photon>& map, float share) const {
+        Rgb sum(0), throughput(1);
+        float eta = 1;
+        bool gather = !final_gather;
+        // As in `PathTracerNee`: what light sampling could have found at the vertex before, if there was any.
+        bool light_sampled = false;
+        SolidAnglePdf pdf;
+        Vec3 from(0), from_normal(0);
+        for (int depth = 1;; ++depth) {
+            const auto hit = scene.intersect(ray);
+            if (!hit) {
+                const float weight =
+                    light_sampled ? power_heuristic(pdf, scene.environment_pdf(from_normal, ray.direction)) : 1;
+                return sum + throughput * scene.environment(ray.direction) * weight;
+            }
+            if (hit->light) {
+                const float weight = light_sampled ? power_heuristic(pdf, scene.light_pdf(from, ray.direction, *hit)) : 1;
+                sum += throughput * scene.emitted(*hit, hit->wo) * weight;
+            }
+            if (depth == max_depth) return sum;
+            const bool diffuse = connectable(scene, *hit);
+            if (diffuse && gather) return sum + throughput * estimate(scene, *hit, depth, map) * share;
+
+            const Vec2 direction = sampler.next_2d(), choices = sampler.next_2d();
+            const Basis basis = hit->shading_frame();
+            if (diffuse) {
+                sum += throughput * direct_light(scene, *hit, choices.x, sampler.next_2d());
+                gather = true;
+            }
+            const auto scattered = scene.with_bsdf(*hit, [&](const auto& bsdf) {
+                return bsdf.sample(basis.to_local(hit->wo), Vec3(direction, choices.x), Transport::radiance);
+            });
+            if (!scattered) return sum;
+            throughput *= scattered->weight;
+            eta *= scattered->eta;
+            if (!survives_roulette(throughput, eta, depth, rr_depth, choices.y)) return sum;
+            light_sampled = diffuse && !scattered->specular;
+            pdf = scattered->pdf;
+            from = hit->position;
+            from_normal = hit->facing_normal();
+            ray = hit->spawn(basis.to_world(scattered->wi));
+        }
+    }
+
+    /// Radiance that the photons around `at` bring towards `at.wo`, times the number of light paths.
+    Rgb estimate(const auto& scene, const SurfacePoint& at, int depth, const HashGrid<Photon>& map) const {
+        Rgb sum(0);
+        map.for_each_near(at.position, [&](const Photon& photon) {
+            if (max_depth >= 0 && depth + static_cast<int>(photon.edges) > max_depth) return;
+            const float cosine = std::abs(dot(at.normal, photon.from));
+            if (cosine > 0) sum += turn<Transport::radiance>(scene, at, photon.from).value * photon.power / cosine;
+        });
+        return map.radius() > 0 ? sum * (1 / (pi * square(map.radius()))) : Rgb(0);
+    }
+
+    Rgb direct_light(const auto& scene, const SurfacePoint& at, float choice, const Vec2& place) const {
+        const LightSample light = scene.sample_light(at, choice, place);
+        if (!(light.pdf.value > 0)) return Rgb(0);
+        const Turn towards = turn<Transport::radiance>(scene, at, light.wi);
+        if (is_black(towards.value) || scene.occluded(light.visibility)) return Rgb(0);
+        const float weight = light.dirac ? 1 : power_heuristic(light.pdf, towards.pdf);
+        return towards.value * light.radiance * (weight / light.pdf.value);
+    }
+};
+
+}  // namespace lightswitch

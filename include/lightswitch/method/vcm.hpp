@@ -1,0 +1,86 @@
+#pragma once
+
+#include <lightswitch/method/hash_grid.hpp>
+#include <lightswitch/method/merging.hpp>
+#include <lightswitch/method/path_records.hpp>
+#include <lightswitch/render/frame.hpp>
+#include <lightswitch/render/method.hpp>
+
+namespace lightswitch {
+
+/// Vertex connection and merging (Georgiev, Krivanek, Davidovic, Slusallek, "Light Transport Simulation with Vertex Connection and
+/// Merging", 2012): bidirectional path tracing whose camera paths also gather the vertices of all light paths around them, all weighed
+/// against each other. What connections cannot find, such as a caustic seen in a mirror, merging does.
+struct Vcm {
+    static constexpr std::string_view name = "vcm";
+    static constexpr Kind kind = Kind::consistent;
+
+    int max_depth = PathLength{}.max_depth;  ///< see `PathLength`
+    int rr_depth = PathLength{}.rr_depth;
+    MergeRadius radius = {};  ///< with 0 pixels nothing is merged: bidirectional path tracing
+
+    class State {
+    public:
+        /// Of the last iteration.
+        std::vector<std::pair<std::string, double>> statistics() const {
+            return {{"light_vertices", double(paths.size())}, {"radius_pixels", double(grid.radius()) / footprint}};
+        }
+
+    private:
+        friend Vcm;
+        struct Item {
+            Vec3 position;
+            const PathVertex* vertex;
+        };
+        double footprint = 0;
+        PathRecords<PathVertex, paths_per_unit> paths;
+        std::vector<Item> items;
+        HashGrid<Item> grid;
+    };
+
+    State start(auto& frame) const {
+        State state;
+        state.footprint = pixel_footprint(frame.scene());
+        return state;
+    }
+
+    void iterate(auto& frame, State& state) const {
+        if (max_depth == 0) return;
+        const auto& scene = frame.scene();
+        const PathLength length{max_depth, rr_depth};
+        const std::uint64_t light_paths = std::uint64_t(frame.width()) * std::uint64_t(frame.height());
+        const double n = double(light_paths);
+        const float r = radius.at(frame.iteration(), state.footprint);
+        const MergeWeights weights = merge_weights(n, r);
+        const double merges = n * double(pi) * double(r) * double(r);
+        const auto count = [](const Contribution& contribution, int, int) { return contribution.value * contribution.weight; };
+
+        state.paths.reset(light_paths);
+        frame.paths(light_paths, [&](std::uint64_t path, auto& sampler, auto& splatter) {
+            state.paths.start(path);
+            splat_light_subpath(scene, sampler, splatter, length, n, weights, count,
+                                [&](const PathVertex& y) { state.paths.push(path, y); });
+        });
+        if (frame.stopped()) return;
+        if (r > 0) {
+            state.paths.list(state.items, frame.executor(),
+                             [](const PathVertex& y) { return State::Item{y.point.position, &y}; });
+            state.grid.build(state.items, r, frame.executor());
+        }
+        frame.pixels([&](const Ray& ray, auto& sampler, const PixelContext& pixel) {
+            const auto merge_around = [&](const PathVertex& z) {
+                Rgb sum(0);
+                state.grid.for_each_near(z.point.position, [&](const State::Item& item) {
+                    const PathVertex& y = *item.vertex;
+                    if (max_depth >= 0 && y.edges + z.edges > max_depth) return;
+                    sum += count(merge(scene, y, z, merges, weights), 0, 0);
+                });
+                return sum;
+            };
+            return gather_camera_subpath(scene, ray, sampler, state.paths.of(pixel.index), length, n, weights, count,
+                                         merge_around);
+        });
+    }
+};
+
+}  // namespace lightswitch
