@@ -33,6 +33,8 @@ inline constexpr std::array method_notes{
                 "be sharp at once: its error falls slowly; glossy surfaces are noisy"},
     MethodNotes{Vcm::name, "all light transport: bdpt that also merges nearby paths, so caustics seen in mirrors, too",
                 "be exact at once where it merges; takes memory for all light paths of an iteration"},
+    MethodNotes{Mlt::name, "all light transport, by chains that stay where light is found: hidden lamps, caustics",
+                "spread its noise evenly: errors are blotches, and the brightness settles with the work"},
 };
 
 /// The notes on a method of `AnyMethod`.

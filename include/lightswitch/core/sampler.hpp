@@ -151,6 +151,25 @@ private:
     std::uint64_t key_;
 };
 
+/// Random numbers one after the other, as many as one likes: for decisions that are not worth a dimension of a `Sampler`.
+class RandomSequence {
+public:
+    /// A function of the seed alone.
+    explicit RandomSequence(std::uint64_t seed = 0) : state_(detail::mix64(seed)) {}
+    /// Another for every pair of numbers of a sampler.
+    explicit RandomSequence(const Vec2& u)
+        : RandomSequence(static_cast<std::uint64_t>(u.x * 0x1p24f) << 24 | static_cast<std::uint64_t>(u.y * 0x1p24f)) {}
+
+    /// Uniform in [0, 1), in steps of 2^-53.
+    [[gnu::always_inline]] double next() {
+        state_ += 0xa0761d6478bd642fu;
+        return double(detail::fold_multiply(state_) >> 11) * 0x1p-53;
+    }
+
+private:
+    std::uint64_t state_;
+};
+
 inline std::string_view name(Sampling sampling) { return sampling == Sampling::sobol ? "sobol" : "independent"; }
 
 }  // namespace lightswitch

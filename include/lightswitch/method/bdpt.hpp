@@ -23,7 +23,7 @@ struct Bdpt {
     static constexpr Kind kind = Kind::unbiased;
 
     int max_depth = PathLength{}.max_depth;  ///< see `PathLength`
-    int rr_depth = PathLength{}.rr_depth;
+    int rr_depth = PathLength{}.rr_depth;    ///< of whole paths: each of the two that make one counts half as many
     std::optional<Strategy> only = {};  ///< this strategy alone; the weighted images of all strategies add up to the image
 
     struct State {};
@@ -32,7 +32,7 @@ struct Bdpt {
     void iterate(auto& frame, State&) const {
         if (max_depth == 0) return;
         const auto& scene = frame.scene();
-        const PathLength length{max_depth, rr_depth};
+        const PathLength length{max_depth, rr_depth / 2};
         const double light_paths = double(frame.width()) * frame.height();
         const auto count = [this](const Contribution& contribution, int s, int t) { return counted(contribution, s, t); };
         frame.pixels([&](const Ray& ray, auto& sampler, const PixelContext& pixel) {

@@ -15,6 +15,11 @@ struct Contribution {
     float weight = 0;  ///< by multiple importance sampling
 };
 
+/// A contribution that depends on whether two points see each other.
+struct Connection : Contribution {
+    Ray visibility;  ///< must be free
+};
+
 /// 1 / (1 + what the strategies with fewer light vertices, and those with more of them, count beside this one).
 inline float strategy_weight(double fewer, double more) { return static_cast<float>(1 / (1 + fewer + more)); }
 
@@ -50,34 +55,36 @@ inline Contribution meet_environment(const auto& scene, const CameraSubpath& pat
 }
 
 /// s = 1: a point of a light, chosen from the vertex of the camera path (next event estimation).
-[[gnu::always_inline]] inline Contribution connect_to_light(const auto& scene, const PathVertex& z, float choice,
-                                                            const Vec2& place, const MergeWeights& merge_weights) {
+[[gnu::always_inline]] inline Connection connect_to_light(const auto& scene, const PathVertex& z, float choice,
+                                                          const Vec2& place, const MergeWeights& merge_weights) {
     const LightSample light = scene.sample_light(z.point, choice, place);
     if (!(light.pdf.value > 0)) return {};
     const Turn at_camera = turn<Transport::radiance>(scene, z.point, light.wi);
-    if (is_black(at_camera.value) || scene.occluded(light.visibility)) return {};
+    if (is_black(at_camera.value)) return {};
     const double cosine = std::abs(dot(z.point.normal, light.wi));
     const double fewer = light.dirac ? 0 : heuristic(double(at_camera.pdf.value) / double(light.pdf.value));
     const double more = heuristic(cosine / double(light.spread)) *
                         (merge_weights.merge + z.weights.last + z.weights.connections * heuristic(at_camera.reverse_pdf.value));
-    return {z.throughput * at_camera.value * (light.radiance / light.pdf.value), strategy_weight(fewer, more)};
+    return {{z.throughput * at_camera.value * (light.radiance / light.pdf.value), strategy_weight(fewer, more)},
+            light.visibility};
 }
 
 /// t = 1: the vertex of a light path, seen by the camera. `view` must be what the camera says of it.
-[[gnu::always_inline]] inline Contribution connect_to_camera(const auto& scene, const PathVertex& y, const Camera::View& view,
-                                                             double light_paths, const MergeWeights& merge_weights) {
+[[gnu::always_inline]] inline Connection connect_to_camera(const auto& scene, const PathVertex& y, const Camera::View& view,
+                                                           double light_paths, const MergeWeights& merge_weights) {
     const Turn at_light = turn<Transport::importance>(scene, y.point, view.wi);
-    if (is_black(at_light.value) || scene.occluded(view.visibility)) return {};
+    if (is_black(at_light.value)) return {};
     const double cosine = std::abs(dot(y.point.normal, view.wi));
     const double fewer =
         heuristic(view.density * cosine / light_paths) *
         (merge_weights.merge + y.weights.last + y.weights.connections * heuristic(at_light.reverse_pdf.value));
-    return {y.throughput * at_light.value * static_cast<float>(view.density / light_paths), strategy_weight(fewer, 0)};
+    return {{y.throughput * at_light.value * static_cast<float>(view.density / light_paths), strategy_weight(fewer, 0)},
+            view.visibility};
 }
 
 /// s, t >= 2: a vertex of each path.
-[[gnu::always_inline]] inline Contribution connect(const auto& scene, const PathVertex& y, const PathVertex& z,
-                                                   const MergeWeights& merge_weights) {
+[[gnu::always_inline]] inline Connection connect(const auto& scene, const PathVertex& y, const PathVertex& z,
+                                                 const MergeWeights& merge_weights) {
     const Vec3 to_light = y.point.position - z.point.position;
     const double distance2 = length_squared(to_light);
     if (!(distance2 > 0)) return {};
@@ -86,7 +93,6 @@ inline Contribution meet_environment(const auto& scene, const CameraSubpath& pat
     if (is_black(at_camera.value)) return {};
     const Turn at_light = turn<Transport::importance>(scene, y.point, -wi);
     if (is_black(at_light.value)) return {};
-    if (scene.occluded(z.point.segment_to(y.point.position, y.point.normal, y.point.offset))) return {};
     const double cosine_z = std::abs(dot(z.point.normal, wi)), cosine_y = std::abs(dot(y.point.normal, wi));
     const double fewer =
         heuristic(at_camera.pdf.value * cosine_y / distance2) *
@@ -94,8 +100,23 @@ inline Contribution meet_environment(const auto& scene, const CameraSubpath& pat
     const double more =
         heuristic(at_light.pdf.value * cosine_z / distance2) *
         (merge_weights.merge + z.weights.last + z.weights.connections * heuristic(at_camera.reverse_pdf.value));
-    return {z.throughput * at_camera.value * at_light.value * y.throughput * static_cast<float>(1 / distance2),
-            strategy_weight(fewer, more)};
+    return {{z.throughput * at_camera.value * at_light.value * y.throughput * static_cast<float>(1 / distance2),
+             strategy_weight(fewer, more)},
+            z.point.segment_to(y.point.position, y.point.normal, y.point.offset)};
+}
+
+/// Adds the light that comes to the camera straight from lights: paths of length 1.
+void see_lights(auto& frame) {
+    const auto& scene = frame.scene();
+    frame.pixels([&](const Ray& ray, auto&) {
+        const auto hit = scene.intersect(ray);
+        return hit ? scene.emitted(*hit, hit->wo) : scene.environment(ray.direction);
+    });
+}
+
+/// Whether the connection contributes anything, which takes a ray if it may.
+inline bool visible(const auto& scene, const Connection& connection) {
+    return !is_black(connection.value) && connection.weight > 0 && !scene.occluded(connection.visibility);
 }
 
 /// Traces a path from a light and splats what the camera sees of it: `splatter` gets `count(contribution, s, t)`. Calls `visit(vertex)`
@@ -106,31 +127,54 @@ void splat_light_subpath(const auto& scene, auto& sampler, auto& splatter, const
     trace_light_subpath(scene, sampler, length, merge_weights, [&](const PathVertex& y) {
         visit(y);
         const auto view = camera.view(y.point, camera.has_lens() ? sampler.next_2d() : Vec2(0.5f));
-        if (view)
-            splatter.splat(view->pixel,
-                           count(connect_to_camera(scene, y, *view, light_paths, merge_weights), y.edges + 1, 1));
+        if (!view) return;
+        const Connection seen = connect_to_camera(scene, y, *view, light_paths, merge_weights);
+        if (visible(scene, seen)) splatter.splat(view->pixel, count(seen, y.edges + 1, 1));
     });
 }
 
 /// Traces the path from the camera that `ray` starts, and returns the sum of `count(contribution, s, t)` over all ways to join it
 /// with the lights and with the vertices of `light_path`, and of `at_vertex(z)` at each vertex where something can be joined.
+///
+/// Most connections carry little. Whether one is worth its ray is left to Russian roulette: one that would add 1 % to
+/// what the path has gathered is traced with probability 0.1, and counts ten times.
 Rgb gather_camera_subpath(const auto& scene, const Ray& ray, auto& sampler, std::span<const PathVertex> light_path,
                           const PathLength& length, double light_paths, const MergeWeights& merge_weights, const auto& count,
                           const auto& at_vertex) {
+    constexpr float worth = 0.1f;
     Rgb sum(0);
+    float gathered = 0;
+    RandomSequence roulette(sampler.next_2d());
+    const auto add = [&](const Contribution& found, int s, int t) {
+        gathered += max_component(found.value) * found.weight;
+        sum += count(found, s, t);
+    };
+    const auto try_connection = [&](Connection connection, int s, int t) {
+        const float adds = max_component(connection.value) * connection.weight;
+        if (adds < worth * gathered) {
+            const float probability = adds / (worth * gathered);
+            if (static_cast<float>(roulette.next()) >= probability) return;
+            connection.value /= probability;
+        }
+        if (visible(scene, connection)) add(connection, s, t);
+    };
+
     CameraSubpath path(ray, light_paths, merge_weights);
     const PathVertex& z = path.vertex();
     for (;;) {
-        if (!path.advance(scene)) return sum + count(meet_environment(scene, path), 0, z.edges + 1);
-        sum += count(meet_light(scene, path), 0, z.edges + 1);
+        if (!path.advance(scene)) {
+            add(meet_environment(scene, path), 0, z.edges + 1);
+            return sum;
+        }
+        add(meet_light(scene, path), 0, z.edges + 1);
         if (z.edges == length.max_depth) return sum;
         const Vec2 direction = sampler.next_2d(), choices = sampler.next_2d(), on_light = sampler.next_2d();
         if (connectable(scene, z.point)) {
             // One number chooses the light and the lobe: they enter different terms of the sum.
-            sum += count(connect_to_light(scene, z, choices.x, on_light, merge_weights), 1, z.edges + 1);
+            try_connection(connect_to_light(scene, z, choices.x, on_light, merge_weights), 1, z.edges + 1);
             for (const PathVertex& y : light_path) {
                 if (length.max_depth >= 0 && y.edges + 1 + z.edges > length.max_depth) break;
-                sum += count(connect(scene, y, z, merge_weights), y.edges + 1, z.edges + 1);
+                try_connection(connect(scene, y, z, merge_weights), y.edges + 1, z.edges + 1);
             }
             sum += at_vertex(z);
         }

@@ -20,12 +20,9 @@ struct LightTracer {
     State start(auto&) const { return {}; }
 
     void iterate(auto& frame, State&) const {
-        const auto& scene = frame.scene();
         if (max_depth == 0) return;
-        frame.pixels([&](const Ray& ray, auto&) {
-            const auto hit = scene.intersect(ray);
-            return hit ? scene.emitted(*hit, hit->wo) : scene.environment(ray.direction);
-        });
+        const auto& scene = frame.scene();
+        see_lights(frame);
         const std::uint64_t light_paths = std::uint64_t(frame.width()) * std::uint64_t(frame.height());
         frame.paths(light_paths, [&](std::uint64_t, auto& sampler, auto& splatter) {
             const auto alone = [](const Contribution& contribution, int, int) { return contribution.value; };

@@ -9,6 +9,20 @@
 
 namespace lightswitch {
 
+/// Light that has arrived at a surface, in render space.
+struct Photon {
+    Vec3 position;
+    Vec3 from;  ///< unit, where the light came from
+    Rgb power;
+    int edges;  ///< segments of its path from the light
+};
+
+/// A photon that also knows what its path counts against other strategies. A copy of what merging needs of a `PathVertex`, so that all
+/// of it is in one place of memory.
+struct WeighedPhoton : Photon {
+    double last, merges;  ///< as in `PartialWeights`
+};
+
 /// The radius within which light is gathered, one for the whole image. It shrinks from iteration to iteration, slowly enough that
 /// noise vanishes and fast enough that bias does (Knaus and Zwicker, "Progressive Photon Mapping: A Probabilistic Approach", 2011).
 struct MergeRadius {
@@ -46,17 +60,17 @@ inline MergeWeights merge_weights(double light_paths, double radius) {
     return {.merge = heuristic(merges), .connect = heuristic(1 / merges)};
 }
 
-/// The light that arrived at `y`, taken as if it had arrived at the vertex `z` of a camera path. `merges` is light paths * pi *
+/// The photon `y`, taken as if it had arrived at the vertex `z` of a camera path. `merges` is light paths * pi *
 /// radius^2, by which the sum over all vertices within the radius is divided.
-[[gnu::always_inline]] inline Contribution merge(const auto& scene, const PathVertex& y, const PathVertex& z, double merges,
+[[gnu::always_inline]] inline Contribution merge(const auto& scene, const WeighedPhoton& y, const PathVertex& z, double merges,
                                                  const MergeWeights& weights) {
-    const Turn at = turn<Transport::radiance>(scene, z.point, y.point.wo);
+    const Turn at = turn<Transport::radiance>(scene, z.point, y.from);
     // Power was spread over the true surface, and counts by the cosine to the shading normal.
-    const float cosine = std::abs(dot(z.point.normal, y.point.wo));
+    const float cosine = std::abs(dot(z.point.normal, y.from));
     if (is_black(at.value) || !(cosine > 0)) return {};
-    const double fewer = y.weights.last * weights.connect + y.weights.merges * heuristic(at.pdf.value);
+    const double fewer = y.last * weights.connect + y.merges * heuristic(at.pdf.value);
     const double more = z.weights.last * weights.connect + z.weights.merges * heuristic(at.reverse_pdf.value);
-    return {z.throughput * at.value * y.throughput * static_cast<float>(1 / (cosine * merges)),
+    return {z.throughput * at.value * y.power * static_cast<float>(1 / (cosine * merges)),
             strategy_weight(fewer, more)};
 }
 

@@ -8,14 +8,6 @@
 
 namespace lightswitch {
 
-/// Light that has arrived at a surface, in render space.
-struct Photon {
-    Vec3 position;
-    Vec3 from;            ///< unit, where the light came from
-    Rgb power;
-    std::uint32_t edges;  ///< segments of its path from the light
-};
-
 /// Photon mapping (Jensen 1996), progressive (Knaus and Zwicker 2011): light paths leave photons where they meet surfaces that are not
 /// specular; paths from the camera go on to the first such surface and gather the photons around. Every iteration has photons of its
 /// own and a smaller radius, so that the mean over the iterations converges to the exact image.
@@ -61,7 +53,7 @@ struct PhotonMapping {
         frame.paths(light_paths, [&](std::uint64_t path, auto& sampler, auto&) {
             state.paths.start(path);
             trace_light_subpath(scene, sampler, {max_depth, rr_depth}, {}, [&](const PathVertex& y) {
-                state.paths.push(path, {y.point.position, y.point.wo, y.throughput, static_cast<std::uint32_t>(y.edges)});
+                state.paths.push(path, {y.point.position, y.point.wo, y.throughput, y.edges});
             });
         });
         if (frame.stopped()) return;
@@ -121,7 +113,7 @@ private:
     Rgb estimate(const auto& scene, const SurfacePoint& at, int depth, const HashGrid<Photon>& map) const {
         Rgb sum(0);
         map.for_each_near(at.position, [&](const Photon& photon) {
-            if (max_depth >= 0 && depth + static_cast<int>(photon.edges) > max_depth) return;
+            if (max_depth >= 0 && depth + photon.edges > max_depth) return;
             const float cosine = std::abs(dot(at.normal, photon.from));
             if (cosine > 0) sum += turn<Transport::radiance>(scene, at, photon.from).value * photon.power / cosine;
         });

@@ -16,26 +16,22 @@ struct Vcm {
     static constexpr Kind kind = Kind::consistent;
 
     int max_depth = PathLength{}.max_depth;  ///< see `PathLength`
-    int rr_depth = PathLength{}.rr_depth;
+    int rr_depth = PathLength{}.rr_depth;    ///< of whole paths: each of the two that make one counts half as many
     MergeRadius radius = {};  ///< with 0 pixels nothing is merged: bidirectional path tracing
 
     class State {
     public:
         /// Of the last iteration.
         std::vector<std::pair<std::string, double>> statistics() const {
-            return {{"light_vertices", double(paths.size())}, {"radius_pixels", double(grid.radius()) / footprint}};
+            return {{"light_vertices", double(paths.size())}, {"radius_pixels", double(map.radius()) / footprint}};
         }
 
     private:
         friend Vcm;
-        struct Item {
-            Vec3 position;
-            const PathVertex* vertex;
-        };
         double footprint = 0;
         PathRecords<PathVertex, paths_per_unit> paths;
-        std::vector<Item> items;
-        HashGrid<Item> grid;
+        std::vector<WeighedPhoton> photons;
+        HashGrid<WeighedPhoton> map;
     };
 
     State start(auto& frame) const {
@@ -47,7 +43,7 @@ struct Vcm {
     void iterate(auto& frame, State& state) const {
         if (max_depth == 0) return;
         const auto& scene = frame.scene();
-        const PathLength length{max_depth, rr_depth};
+        const PathLength length{max_depth, rr_depth / 2};
         const std::uint64_t light_paths = std::uint64_t(frame.width()) * std::uint64_t(frame.height());
         const double n = double(light_paths);
         const float r = radius.at(frame.iteration(), state.footprint);
@@ -63,15 +59,15 @@ struct Vcm {
         });
         if (frame.stopped()) return;
         if (r > 0) {
-            state.paths.list(state.items, frame.executor(),
-                             [](const PathVertex& y) { return State::Item{y.point.position, &y}; });
-            state.grid.build(state.items, r, frame.executor());
+            state.paths.list(state.photons, frame.executor(), [](const PathVertex& y) {
+                return WeighedPhoton{{y.point.position, y.point.wo, y.throughput, y.edges}, y.weights.last, y.weights.merges};
+            });
+            state.map.build(state.photons, r, frame.executor());
         }
         frame.pixels([&](const Ray& ray, auto& sampler, const PixelContext& pixel) {
             const auto merge_around = [&](const PathVertex& z) {
                 Rgb sum(0);
-                state.grid.for_each_near(z.point.position, [&](const State::Item& item) {
-                    const PathVertex& y = *item.vertex;
+                state.map.for_each_near(z.point.position, [&](const WeighedPhoton& y) {
                     if (max_depth >= 0 && y.edges + z.edges > max_depth) return;
                     sum += count(merge(scene, y, z, merges, weights), 0, 0);
                 });

@@ -5,6 +5,7 @@
 #include <lightswitch/core/error.hpp>
 #include <lightswitch/method/bdpt.hpp>
 #include <lightswitch/method/light_tracer.hpp>
+#include <lightswitch/method/mlt.hpp>
 #include <lightswitch/method/path_tracer.hpp>
 #include <lightswitch/method/path_tracer_nee.hpp>
 #include <lightswitch/method/phong.hpp>
@@ -20,7 +21,7 @@
 namespace lightswitch {
 
 /// Any of the library's methods. One `std::visit` per render leads to code made for that method and scene type.
-using AnyMethod = std::variant<Silhouette, Phong, PathTracer, PathTracerNee, LightTracer, Bdpt, PhotonMapping, Vcm>;
+using AnyMethod = std::variant<Silhouette, Phong, PathTracer, PathTracerNee, LightTracer, Bdpt, PhotonMapping, Vcm, Mlt>;
 
 /// Calls `f(M{})` for every method of `AnyMethod` in turn, with its defaults.
 void for_each_method(auto&& f) {

@@ -34,6 +34,91 @@ inline LibraryDescription empty_room(std::string name) {
     return scene;
 }
 
+/// The box between two corners, fronts outwards.
+inline Mesh block(const DVec3& low, const DVec3& high) {
+    const DVec3 center = 0.5 * (low + high), half = 0.5 * (high - low);
+    return cube(DMat4({half.x, 0, 0, 0}, {0, half.y, 0, 0}, {0, 0, half.z, 0}, glm::dvec4(center, 1)));
+}
+
+inline void add_quad(Mesh& mesh, const DVec3& a, const DVec3& b, const DVec3& c, const DVec3& d) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    mesh.positions.insert(mesh.positions.end(), {a, b, c, d});
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    mesh.triangles.push_back({first, first + 2, first + 3});
+}
+
+/// The tiles of one colour of a floor at height 0: squares of half a unit, of which every second is missing.
+inline Mesh tiles(int parity) {
+    Mesh mesh;
+    for (int x = -6; x < 6; ++x)
+        for (int z = -7; z < 11; ++z) {
+            if (((x + z) & 1) != parity) continue;
+            const DVec3 corner = 0.5 * DVec3(x, 0, z), right(0.5, 0, 0), near(0, 0, 0.5);
+            add_quad(mesh, corner, corner + near, corner + right + near, corner + right);
+        }
+    return mesh;
+}
+
+/// A wall across z = 0 with a doorway from `left` to `right` and up to `top`, for the rooms of `add_two_rooms`: it reaches into their
+/// floor, their ceiling and the walls beside it.
+inline Mesh wall_with_doorway(double left, double right, double top, double thickness) {
+    const double x[] = {-2.7, left, right, 2.7}, y[] = {-0.2, top, 2.8};
+    const auto corner = [&](int i, int j, int side) { return DVec3(x[i], y[j], (side - 0.5) * thickness); };
+    Mesh mesh;
+    const auto add = [&](const auto&... corners) { add_quad(mesh, corners...); };
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 2; ++j) {
+            if (i == 1 && j == 0) continue;  // the doorway
+            add(corner(i, j, 1), corner(i + 1, j, 1), corner(i + 1, j + 1, 1), corner(i, j + 1, 1));
+            add(corner(i + 1, j, 0), corner(i, j, 0), corner(i, j + 1, 0), corner(i + 1, j + 1, 0));
+        }
+    add(corner(1, 0, 0), corner(1, 1, 0), corner(1, 1, 1), corner(1, 0, 1));
+    add(corner(2, 0, 1), corner(2, 1, 1), corner(2, 1, 0), corner(2, 0, 0));
+    add(corner(1, 1, 0), corner(2, 1, 0), corner(2, 1, 1), corner(1, 1, 1));
+    return mesh;
+}
+
+/// The rooms of `describe_ajar_door`, the door between them and the lamp. Surfaces that meet reach through each other, so that no
+/// light passes where they do.
+inline void add_two_rooms(LibraryDescription& scene) {
+    const std::size_t plaster = scene.add(Lambert{{0.82f, 0.81f, 0.79f}});
+    const std::size_t blue = scene.add(Lambert{{0.30f, 0.45f, 0.58f}});
+    const std::size_t light_tile = scene.add(Lambert{{0.74f, 0.72f, 0.68f}});
+    const std::size_t dark_tile = scene.add(Lambert{{0.22f, 0.20f, 0.20f}});
+    const std::size_t paint = scene.add(Lambert{{0.55f, 0.29f, 0.17f}});
+    const std::size_t brass = scene.add(RoughConductor{.alpha = 0.2f, .reflectance = {0.9f, 0.7f, 0.35f}});
+    const std::size_t lamp = scene.add(TwoSided<Lambert>{{Rgb(0.5f)}});
+    scene.add(block({-2.6, -0.1, -3}, {2.6, 2.6, 5}).flipped(), plaster);
+    scene.add(quad({-2.5, -0.2, 5.1}, {-2.5, -0.2, -3.1}, {-2.5, 2.7, -3.1}, {-2.5, 2.7, 5.1}), blue);
+    scene.add(tiles(0), light_tile);
+    scene.add(tiles(1), dark_tile);
+
+    constexpr double left = -1.75, right = -0.75, top = 2.1, thickness = 0.12;
+    scene.add(wall_with_doorway(left, right, top, thickness), plaster);
+    // The door turns about the edge of the wall at its left, into the room of the camera.
+    const double opened = glm::radians(24.0), c = std::cos(opened), s = std::sin(opened);
+    const DMat4 turned({c, 0, s, 0}, {0, 1, 0, 0}, {-s, 0, c, 0}, {left, 0, thickness / 2, 1});
+    scene.add(block({-0.005, 0.01, -0.045}, {right - left - 0.01, top - 0.01, 0}).transformed(turned), paint);
+    scene.add(Sphere{DVec3(turned * glm::dvec4(0.9, 1.02, 0.05, 1)), 0.035}, brass);
+
+    scene.add(quad({1.1, 0.9, -1}, {-0.1, 0.9, -1}, {-0.1, 1.9, -1}, {1.1, 1.9, -1}), lamp, Rgb(560, 520, 450));
+}
+
+/// The table of `describe_ajar_door` with what stands on it.
+inline void add_table(LibraryDescription& scene) {
+    const std::size_t wood = scene.add(Lambert{{0.55f, 0.38f, 0.22f}});
+    scene.add(block({-0.75, 0.72, 1.45}, {1.25, 0.77, 2.4}), wood);
+    for (const double x : {-0.68, 1.1})
+        for (const double z : {1.52, 2.25}) scene.add(block({x, -0.1, z}, {x + 0.08, 0.73, z + 0.08}), wood);
+    const auto stand = [&](double x, double z, double radius, LibraryBsdf bsdf) {
+        scene.add(Sphere{{x, 0.77 + radius, z}, radius}, scene.add(bsdf));
+    };
+    stand(-0.48, 2.02, 0.21, Dielectric{.eta = 1.5f});
+    stand(-0.06, 1.72, 0.26, Conductor{.reflectance = Rgb(0.9f)});
+    stand(0.4, 2.12, 0.19, RoughConductor{.alpha = 0.15f, .reflectance = {0.9f, 0.62f, 0.3f}});
+    stand(0.88, 1.8, 0.24, Lambert{{0.2f, 0.5f, 0.42f}});
+}
+
 }  // namespace detail
 
 /// A tube around a (2,3) torus knot with smooth normals, `along` x `around` quadrilaterals, in a box of about 2 x 2 x 1.
@@ -95,6 +180,20 @@ inline LibraryDescription describe_cornell_sculpture() {
     return scene;
 }
 
+/// Two rooms after the scene with the ajar door of Veach (1997, chapter 11): the only lamp is in the far one and shines away from
+/// the door, so that all light in the room of the camera has come through the gap, after one reflection at least. On the table are
+/// a sphere of glass, a mirror, a glossy and a diffuse one.
+inline LibraryDescription describe_ajar_door() {
+    LibraryDescription scene;
+    scene.name = "ajar-door";
+    detail::add_two_rooms(scene);
+    detail::add_table(scene);
+    scene.camera.to_world = CameraDescription::look_at({1.1, 1.55, 4.6}, {-0.3, 0.96, 0}, {0, 1, 0});
+    scene.camera.fov = 43;
+    scene.film.width = scene.film.height = 256;
+    return scene;
+}
+
 /// A closed box with the camera inside, every wall of which reflects `albedo` and emits 1: every pixel is 1 / (1 - albedo), and up
 /// to depth d the sum of the first d powers of `albedo`.
 inline LibraryDescription describe_furnace(float albedo = 0.5f) {
@@ -115,19 +214,23 @@ inline DiffuseScene cornell_box() {
 inline FullScene cornell_spheres() { return build_scene<AllBsdfs, AllLights>(describe_cornell_spheres()); }
 /// `describe_cornell_sculpture`, built.
 inline FullScene cornell_sculpture() { return build_scene<AllBsdfs, AllLights>(describe_cornell_sculpture()); }
+/// `describe_ajar_door`, built.
+inline FullScene ajar_door() { return build_scene<AllBsdfs, AllLights>(describe_ajar_door()); }
 /// `describe_furnace`, built.
 inline DiffuseScene furnace(float albedo = 0.5f) {
     return build_scene<DiffuseBsdfs, Lights<TriangleLight>>(describe_furnace(albedo));
 }
 
 /// Names that `describe` knows.
-inline constexpr std::array<std::string_view, 4> names{"cornell-box", "cornell-spheres", "cornell-sculpture", "furnace"};
+inline constexpr std::array<std::string_view, 5> names{"cornell-box", "cornell-spheres", "cornell-sculpture", "ajar-door",
+                                                            "furnace"};
 
 /// The stock scene of that name, or nothing.
 inline std::optional<LibraryDescription> describe(std::string_view name) {
     if (name == "cornell-box") return describe_cornell_box();
     if (name == "cornell-spheres") return describe_cornell_spheres();
     if (name == "cornell-sculpture") return describe_cornell_sculpture();
+    if (name == "ajar-door") return describe_ajar_door();
     if (name == "furnace") return describe_furnace();
     return std::nullopt;
 }
