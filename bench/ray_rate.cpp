@@ -1,4 +1,4 @@
-// Rays per second of path-nee over a bare replay of the same rays through Embree: what the library adds to its ray tracer.
+// Rays per second of path-nee and bdpt over a bare replay of the same rays through Embree: what the library adds to its ray tracer.
 //
 //   ray_rate [SCENE.xml ...]     without arguments: the stock Cornell box
 //
@@ -41,6 +41,10 @@ struct Recorder {
     auto sample_light(const auto& p, float c, const auto& u) const { return scene.sample_light(p, c, u); }
     auto light_pdf(const auto& p, const auto& w, const auto& h) const { return scene.light_pdf(p, w, h); }
     auto environment_pdf(const auto& n, const auto& w) const { return scene.environment_pdf(n, w); }
+    auto sample_emission(float c, const auto& u, const auto& v) const { return scene.sample_emission(c, u, v); }
+    auto emission_pdf(const auto& h, const auto& d) const { return scene.emission_pdf(h, d); }
+    auto environment_emission_pdf() const { return scene.environment_emission_pdf(); }
+    float spread(auto l, const auto& p, const auto& w, const auto& q) const { return scene.spread(l, p, w, q); }
     const auto& camera() const { return scene.camera(); }
     const auto& film() const { return scene.film(); }
 };
@@ -66,13 +70,13 @@ void replay(const S& scene, const std::vector<RecordedRay>& rays, std::uint64_t&
     }
 }
 
-template <class S>
+template <class M, class S>
 void measure(const S& scene, int pairs) {
-    const ls::PathTracerNee method;
+    const M method;
     const Recorder<S> recorder{scene, {}};
     const ls::Settings settings{.threads = 1};
     {
-        ls::Session<Recorder<S>, ls::PathTracerNee, ls::SerialExecutor> session(recorder, method, settings, {});
+        ls::Session<Recorder<S>, M, ls::SerialExecutor> session(recorder, method, settings, {});
         session.run({.samples = 4});
     }
     std::uint64_t hits = 0;
@@ -80,11 +84,11 @@ void measure(const S& scene, int pairs) {
         pairs,
         [&] { replay(scene, recorder.rays, hits); },
         [&] {
-            ls::Session<S, ls::PathTracerNee, ls::SerialExecutor> session(scene, method, settings, {});
+            ls::Session<S, M, ls::SerialExecutor> session(scene, method, settings, {});
             session.run({.samples = 4});
         });
     const double samples = 4e-6 * scene.camera().width() * scene.camera().height();
-    std::printf("%-16s %9.2f %9.3f %8.3f  (%.3f to %.3f)%s\n", scene.name().c_str(),
+    std::printf("%-16s %-9s %9.2f %9.3f %8.3f  (%.3f to %.3f)%s\n", scene.name().c_str(), M::name.data(),
                 double(recorder.rays.size()) * 1e-6 / result.b.median, samples / result.b.median, result.ratio.median,
                 result.ratio.low, result.ratio.high, hits ? "" : "  nothing was hit");
 }
@@ -92,11 +96,15 @@ void measure(const S& scene, int pairs) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-    std::printf("%-16s %9s %9s %8s\n", "scene", "Mrays/s", "Msamp/s", "ratio");
-    if (argc == 1) measure(ls::stock::cornell_box(), 15);
+    std::printf("%-16s %-9s %9s %9s %8s\n", "scene", "method", "Mrays/s", "Msamp/s", "ratio");
+    const auto measure_all = [](const auto& s) {
+        measure<ls::PathTracerNee>(s, 15);
+        measure<ls::Bdpt>(s, 15);
+    };
+    if (argc == 1) measure_all(ls::stock::cornell_box());
     for (int i = 1; i < argc; ++i) {
         const ls::AnyScene scene = ls::build_any(ls::load_mitsuba(argv[i]));
-        std::visit([](const auto& s) { measure(s, 15); }, scene);
+        std::visit(measure_all, scene);
     }
 } catch (const ls::Error& error) {
     std::fprintf(stderr, "ray_rate: %s\n", error.what());

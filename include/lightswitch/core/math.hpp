@@ -39,11 +39,11 @@ constexpr float gamma_bound(int n) {
 [[gnu::always_inline]] inline float dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 [[gnu::always_inline]] inline float length_squared(const Vec3& v) { return dot(v, v); }
 [[gnu::always_inline]] inline Vec3 normalize(const Vec3& v) { return v * (1.0f / std::sqrt(length_squared(v))); }
-inline float max_component(const Vec3& v) { return std::max(v.x, std::max(v.y, v.z)); }
+[[gnu::always_inline]] inline float max_component(const Vec3& v) { return std::max(v.x, std::max(v.y, v.z)); }
 inline float min_component(const Vec3& v) { return std::min(v.x, std::min(v.y, v.z)); }
 inline float square(float x) { return x * x; }
 inline float safe_sqrt(float x) { return std::sqrt(std::max(x, 0.0f)); }
-inline bool is_black(const Rgb& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
+[[gnu::always_inline]] inline bool is_black(const Rgb& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
 
 /// Luminance of linear RGB (BT.709 weights).
 template <class T>

@@ -42,7 +42,7 @@ struct Bdpt {
             splat_light_subpath(scene, light_sampler, pixel.splatter, length, light_paths, {}, count,
                                 [&](const PathVertex& y) { light_path.push_back(y); });
             return gather_camera_subpath(scene, ray, sampler, light_path, length, light_paths, {}, count,
-                                         [](const PathVertex&) { return Rgb(0); });
+                                         [](const PathVertex&, const Arrival&) { return Rgb(0); });
         });
     }
 

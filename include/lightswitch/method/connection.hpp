@@ -55,11 +55,11 @@ inline Contribution meet_environment(const auto& scene, const CameraSubpath& pat
 }
 
 /// s = 1: a point of a light, chosen from the vertex of the camera path (next event estimation).
-[[gnu::always_inline]] inline Connection connect_to_light(const auto& scene, const PathVertex& z, float choice,
-                                                          const Vec2& place, const MergeWeights& merge_weights) {
+[[gnu::always_inline]] inline Connection connect_to_light(const auto& scene, const PathVertex& z, const Arrival& at_z,
+                                                          float choice, const Vec2& place, const MergeWeights& merge_weights) {
     const LightSample light = scene.sample_light(z.point, choice, place);
     if (!(light.pdf.value > 0)) return {};
-    const Turn at_camera = turn<Transport::radiance>(scene, z.point, light.wi);
+    const Turn at_camera = turn<Transport::radiance>(scene, z.point, at_z, light.wi);
     if (is_black(at_camera.value)) return {};
     const double cosine = std::abs(dot(z.point.normal, light.wi));
     const double fewer = light.dirac ? 0 : heuristic(double(at_camera.pdf.value) / double(light.pdf.value));
@@ -72,7 +72,7 @@ inline Contribution meet_environment(const auto& scene, const CameraSubpath& pat
 /// t = 1: the vertex of a light path, seen by the camera. `view` must be what the camera says of it.
 [[gnu::always_inline]] inline Connection connect_to_camera(const auto& scene, const PathVertex& y, const Camera::View& view,
                                                            double light_paths, const MergeWeights& merge_weights) {
-    const Turn at_light = turn<Transport::importance>(scene, y.point, view.wi);
+    const Turn at_light = turn<Transport::importance>(scene, y.point, Arrival(y.point), view.wi);
     if (is_black(at_light.value)) return {};
     const double cosine = std::abs(dot(y.point.normal, view.wi));
     const double fewer =
@@ -84,14 +84,14 @@ inline Contribution meet_environment(const auto& scene, const CameraSubpath& pat
 
 /// s, t >= 2: a vertex of each path.
 [[gnu::always_inline]] inline Connection connect(const auto& scene, const PathVertex& y, const PathVertex& z,
-                                                 const MergeWeights& merge_weights) {
+                                                 const Arrival& at_z, const MergeWeights& merge_weights) {
     const Vec3 to_light = y.point.position - z.point.position;
     const double distance2 = length_squared(to_light);
     if (!(distance2 > 0)) return {};
     const Vec3 wi = to_light * static_cast<float>(1 / std::sqrt(distance2));
-    const Turn at_camera = turn<Transport::radiance>(scene, z.point, wi);
+    const Turn at_camera = turn<Transport::radiance>(scene, z.point, at_z, wi);
     if (is_black(at_camera.value)) return {};
-    const Turn at_light = turn<Transport::importance>(scene, y.point, -wi);
+    const Turn at_light = turn<Transport::importance>(scene, y.point, Arrival(y.point), -wi);
     if (is_black(at_light.value)) return {};
     const double cosine_z = std::abs(dot(z.point.normal, wi)), cosine_y = std::abs(dot(y.point.normal, wi));
     const double fewer =
@@ -134,7 +134,7 @@ void splat_light_subpath(const auto& scene, auto& sampler, auto& splatter, const
 }
 
 /// Traces the path from the camera that `ray` starts, and returns the sum of `count(contribution, s, t)` over all ways to join it
-/// with the lights and with the vertices of `light_path`, and of `at_vertex(z)` at each vertex where something can be joined.
+/// with the lights and with the vertices of `light_path`, and of `at_vertex(z, arrival)` at each vertex where something can be joined.
 ///
 /// Most connections carry little. Whether one is worth its ray is left to Russian roulette: one that would add 1 % to
 /// what the path has gathered is traced with probability 0.1, and counts ten times.
@@ -171,12 +171,13 @@ Rgb gather_camera_subpath(const auto& scene, const Ray& ray, auto& sampler, std:
         const Vec2 direction = sampler.next_2d(), choices = sampler.next_2d(), on_light = sampler.next_2d();
         if (connectable(scene, z.point)) {
             // One number chooses the light and the lobe: they enter different terms of the sum.
-            try_connection(connect_to_light(scene, z, choices.x, on_light, merge_weights), 1, z.edges + 1);
+            const Arrival at_z(z.point);
+            try_connection(connect_to_light(scene, z, at_z, choices.x, on_light, merge_weights), 1, z.edges + 1);
             for (const PathVertex& y : light_path) {
                 if (length.max_depth >= 0 && y.edges + 1 + z.edges > length.max_depth) break;
-                try_connection(connect(scene, y, z, merge_weights), y.edges + 1, z.edges + 1);
+                try_connection(connect(scene, y, z, at_z, merge_weights), y.edges + 1, z.edges + 1);
             }
-            sum += at_vertex(z);
+            sum += at_vertex(z, at_z);
         }
         if (!path.scatter(scene, direction, choices, length.rr_depth)) return sum;
     }

@@ -62,9 +62,9 @@ inline MergeWeights merge_weights(double light_paths, double radius) {
 
 /// The photon `y`, taken as if it had arrived at the vertex `z` of a camera path. `merges` is light paths * pi *
 /// radius^2, by which the sum over all vertices within the radius is divided.
-[[gnu::always_inline]] inline Contribution merge(const auto& scene, const WeighedPhoton& y, const PathVertex& z, double merges,
-                                                 const MergeWeights& weights) {
-    const Turn at = turn<Transport::radiance>(scene, z.point, y.from);
+[[gnu::always_inline]] inline Contribution merge(const auto& scene, const WeighedPhoton& y, const PathVertex& z, const Arrival& at_z,
+                                                 double merges, const MergeWeights& weights) {
+    const Turn at = turn<Transport::radiance>(scene, z.point, at_z, y.from);
     // Power was spread over the true surface, and counts by the cosine to the shading normal.
     const float cosine = std::abs(dot(z.point.normal, y.from));
     if (is_black(at.value) || !(cosine > 0)) return {};

@@ -223,7 +223,7 @@ private:
             return {};
         } else if (s == 1) {
             const float choice = on_light.next_1d();
-            found = connect_to_light(scene, z.vertex(), choice, on_light.next_2d(), {});
+            found = connect_to_light(scene, z.vertex(), Arrival(z.vertex().point), choice, on_light.next_2d(), {});
         } else {
             LightSubpath y(scene, on_light, {});
             if (is_black(y.carried())) return {};
@@ -233,7 +233,7 @@ private:
             }
             if (!connectable(scene, y.vertex().point)) return {};
             if (t > 1) {
-                found = connect(scene, y.vertex(), z.vertex(), {});
+                found = connect(scene, y.vertex(), z.vertex(), Arrival(z.vertex().point), {});
             } else {
                 const auto view = camera.view(y.vertex().point, on_lens);
                 if (!view) return {};

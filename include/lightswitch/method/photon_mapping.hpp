@@ -112,10 +112,11 @@ private:
     /// Radiance that the photons around `at` bring towards `at.wo`, times the number of light paths.
     Rgb estimate(const auto& scene, const SurfacePoint& at, int depth, const HashGrid<Photon>& map) const {
         Rgb sum(0);
+        const Arrival arrival(at);
         map.for_each_near(at.position, [&](const Photon& photon) {
             if (max_depth >= 0 && depth + photon.edges > max_depth) return;
             const float cosine = std::abs(dot(at.normal, photon.from));
-            if (cosine > 0) sum += turn<Transport::radiance>(scene, at, photon.from).value * photon.power / cosine;
+            if (cosine > 0) sum += turn<Transport::radiance>(scene, at, arrival, photon.from).value * photon.power / cosine;
         });
         return map.radius() > 0 ? sum * (1 / (pi * square(map.radius()))) : Rgb(0);
     }
@@ -123,7 +124,7 @@ private:
     Rgb direct_light(const auto& scene, const SurfacePoint& at, float choice, const Vec2& place) const {
         const LightSample light = scene.sample_light(at, choice, place);
         if (!(light.pdf.value > 0)) return Rgb(0);
-        const Turn towards = turn<Transport::radiance>(scene, at, light.wi);
+        const Turn towards = turn<Transport::radiance>(scene, at, Arrival(at), light.wi);
         if (is_black(towards.value) || scene.occluded(light.visibility)) return Rgb(0);
         const float weight = light.dirac ? 1 : power_heuristic(light.pdf, towards.pdf);
         return towards.value * light.radiance * (weight / light.pdf.value);

@@ -39,6 +39,14 @@ struct PathVertex {
     int edges = 0;  ///< segments from the start of the path to here
 };
 
+/// Where a path comes from, in the frame of the surface: worked out once for all the ways in which the path could go on.
+struct Arrival {
+    Basis basis;
+    Vec3 from;
+
+    [[gnu::always_inline]] explicit Arrival(const SurfacePoint& at) : basis(at.shading_frame()), from(basis.to_local(at.wo)) {}
+};
+
 /// A BSDF evaluated between the direction that a path comes from and one that it could leave by.
 struct Turn {
     Rgb value{0};               ///< the BSDF times the cosine that belongs to it, see `turn`
@@ -61,9 +69,8 @@ template <Transport transport>
 
 /// `Turn` of the path at `at` towards `out` (unit). Black at a specular surface.
 template <Transport transport>
-[[gnu::always_inline]] inline Turn turn(const auto& scene, const SurfacePoint& at, const Vec3& out) {
-    const Basis basis = at.shading_frame();
-    const Vec3 from = basis.to_local(at.wo), to = basis.to_local(out);
+[[gnu::always_inline]] inline Turn turn(const auto& scene, const SurfacePoint& at, const Arrival& arrival, const Vec3& out) {
+    const Vec3 from = arrival.from, to = arrival.basis.to_local(out);
     return scene.with_bsdf(at, [&](const auto& bsdf) __attribute__((always_inline)) {
         Turn result;
         if constexpr (!std::remove_cvref_t<decltype(bsdf)>::specular) {

@@ -65,11 +65,11 @@ struct Vcm {
             state.map.build(state.photons, r, frame.executor());
         }
         frame.pixels([&](const Ray& ray, auto& sampler, const PixelContext& pixel) {
-            const auto merge_around = [&](const PathVertex& z) {
+            const auto merge_around = [&](const PathVertex& z, const Arrival& at_z) {
                 Rgb sum(0);
                 state.map.for_each_near(z.point.position, [&](const WeighedPhoton& y) {
                     if (max_depth >= 0 && y.edges + z.edges > max_depth) return;
-                    sum += count(merge(scene, y, z, merges, weights), 0, 0);
+                    sum += count(merge(scene, y, z, at_z, merges, weights), 0, 0);
                 });
                 return sum;
             };
