@@ -17,8 +17,8 @@ using test::UniformCorrelation;
 namespace {
 
 // False alarms, were the seeds drawn at random (they are fixed): all chi-square tests of this file together 1e-6; a
-// correlation or a mean may be off by 6 standard errors, 2e-9, and there are fewer than 500 of them: 1e-6.
-constexpr int chi_square_tests = 600;
+// correlation or a mean may be off by 6 standard errors, 2e-9, and there are fewer than 3000 of them: 6e-6.
+constexpr int chi_square_tests = 1500;
 const double level = test::sidak(1e-6, chi_square_tests);
 constexpr double six_sigmas = 6;
 
@@ -354,4 +354,118 @@ TEST_CASE("sampler: Sobol' points integrate a smooth function with less error, a
             for (const double sum : sums) mean.add(sum / static_cast<double>(iterations));
             CHECK(mean.sigmas(truth) < six_sigmas);
         }
+}
+
+namespace {
+
+/// Correlations, and joint distributions, of the numbers of two samplers, which are made anew for every index: pairs of
+/// the same number in both, and neighbouring ones.
+void check_independent(const auto& two_samplers, std::size_t pairs) {
+    constexpr std::uint64_t count = 16384;
+    std::vector<std::vector<Vec2>> first(pairs), second(pairs);
+    for (std::uint64_t i = 0; i < count; ++i) {
+        const auto [a, b] = two_samplers(i, pairs);
+        for (std::size_t k = 0; k < pairs; ++k) {
+            first[k].push_back(a[k]);
+            second[k].push_back(b[k]);
+        }
+    }
+    for (std::size_t k = 0; k < pairs; ++k)
+        for (const std::size_t other : {k, (k + 1) % pairs}) {
+            UniformCorrelation same, crossed;
+            SquareTest joint;
+            int equal = 0;
+            for (std::size_t i = 0; i < count; ++i) {
+                const Vec2 a = first[k][i], b = second[other][i];
+                same.add(double(a.x), double(b.x));
+                crossed.add(double(a.x), double(b.y));
+                joint.add(a.x, b.x);
+                equal += a.x == b.x;
+            }
+            CAPTURE(k);
+            CAPTURE(other);
+            CHECK(std::abs(same.sigmas()) < six_sigmas);
+            CHECK(std::abs(crossed.sigmas()) < six_sigmas);
+            CHECK(joint.p_value() > level);
+            CHECK(equal < 4);  // by chance: 16384 / 2^24, so 4 or more with probability 4e-14
+        }
+}
+
+std::vector<Vec2> draw(Sampler& sampler, std::size_t pairs) {
+    std::vector<Vec2> result(pairs);
+    for (Vec2& p : result) p = sampler.next_2d();
+    return result;
+}
+
+}  // namespace
+
+TEST_CASE("sampler: a split one is independent of the one that it comes from, and of another split") {
+    for (const Sampling sampling : both) {
+        CAPTURE(name(sampling));
+        // Some before the split; so many after it that the Sobol' pairs of both run out.
+        check_independent(
+            [&](std::uint64_t i, std::size_t pairs) {
+                const IterationPoints points(sampling, 31, i);
+                Sampler original(points, 0, 77);
+                draw(original, 2);
+                Sampler other = original.split();
+                return std::pair(draw(original, pairs), draw(other, pairs));
+            },
+            70);
+        check_independent(
+            [&](std::uint64_t i, std::size_t pairs) {
+                const IterationPoints points(sampling, 32, i);
+                Sampler original(points, 0, 78);
+                Sampler other = original.split(), third = original.split();
+                return std::pair(draw(other, pairs), draw(third, pairs));
+            },
+            40);
+        // Over the pixels of one iteration: with the original of the same pixel, and with the split one of the next.
+        const IterationPoints points(sampling, 33, 6);
+        check_independent(
+            [&](std::uint64_t pixel, std::size_t pairs) {
+                Sampler original(points, 0, pixel);
+                Sampler other = original.split();
+                return std::pair(draw(original, pairs), draw(other, pairs));
+            },
+            40);
+        check_independent(
+            [&](std::uint64_t pixel, std::size_t pairs) {
+                Sampler a(points, 0, pixel), b(points, 0, pixel + 1);
+                Sampler first = a.split(), second = b.split();
+                return std::pair(draw(first, pairs), draw(second, pairs));
+            },
+            40);
+    }
+}
+
+TEST_CASE("sampler: a split one is uniform, also beyond the Sobol' pairs, and over pixels") {
+    for (const Sampling sampling : both)
+        for (const std::size_t pair : {0u, 5u, 60u}) {
+            SquareTest over_iterations, over_pixels;
+            const IterationPoints one(sampling, 34, 5);
+            for (std::uint64_t i = 0; i < 20000; ++i) {
+                const IterationPoints points(sampling, 34, i);
+                Sampler a(points, 0, 9), b(one, 0, i);
+                Sampler first = a.split(), second = b.split();
+                const Vec2 p = draw(first, pair + 1)[pair], q = draw(second, pair + 1)[pair];
+                over_iterations.add(p.x, p.y);
+                over_pixels.add(q.x, q.y);
+            }
+            CHECK(over_pixels.p_value() > level);
+            CHECK(over_iterations.p_value() > level);
+        }
+}
+
+TEST_CASE("sampler: both halves of a split keep the net of Sobol' points") {
+    std::vector<Vec2> original, split;
+    for (std::uint64_t i = 0; i < 64; ++i) {
+        const IterationPoints points(Sampling::sobol, 35, i);
+        Sampler a(points, 0, 3);
+        Sampler b = a.split();
+        original.push_back(draw(a, 3)[2]);
+        split.push_back(draw(b, 3)[2]);
+    }
+    CHECK(is_net(original, 6));
+    CHECK(is_net(split, 6));
 }

@@ -200,11 +200,17 @@ TEST_CASE("splats off the film are ignored, and those that are not finite are co
         });
     };
     for (const Vec2 at :
-         {Vec2(-1e-6f, 1), Vec2(1, -0.5f), Vec2(4, 1), Vec2(1, 3), Vec2(infinity, 0), Vec2(-1e30f, 1e30f)}) {
+         {Vec2(-1e-6f, 1), Vec2(1, -0.5f), Vec2(4, 1), Vec2(1, 3), Vec2(3e38f, 0), Vec2(-1e30f, 1e30f)}) {
         const auto [image, counts] = splat(at, Rgb(1));
         CHECK(image.mean() == DVec3(0));
         CHECK(counts.splats == 0);
         CHECK(counts.non_finite == 0);
+    }
+    for (const Vec2 at : {Vec2(infinity, 0), Vec2(1, -infinity), Vec2(std::numeric_limits<float>::quiet_NaN(), 1)}) {
+        const auto [image, counts] = splat(at, Rgb(1));
+        CHECK(image.mean() == DVec3(0));
+        CHECK(counts.splats == 0);
+        CHECK(counts.non_finite == 1);
     }
     const auto [corner, corner_counts] = splat({3.9999f, 2.9999f}, Rgb(1, 2, 3));
     CHECK(corner(3, 2) == Rgb(1, 2, 3));
@@ -261,4 +267,99 @@ TEST_CASE("a step becomes the integral of the filter") {
     check(Filter::tent(2), tent(2));
     check(Filter::gaussian(), gaussian(0.5));
     check(Filter::gaussian(1), gaussian(1));
+}
+
+namespace {
+
+/// An image made by splats alone: `value(x, y)` over a film of 8 x 4 pixels and its surroundings, by the midpoint rule.
+template <class F>
+Image splatted(const Filter& filter, const F& value) {
+    SceneDescription<Lambert> scene = describe_step(-1000, filter);
+    scene.film.width = 8;
+    scene.film.height = 4;
+    constexpr int fine = 16, margin = 8;
+    const auto splat_all = [&](auto& frame) {
+        frame.paths(std::uint64_t((8 + 2 * margin) * fine), [&](std::uint64_t i, auto&, auto& splatter) {
+            for (int j = 0; j < (4 + 2 * margin) * fine; ++j) {
+                const Vec2 at((float(i) + 0.5f) / fine - margin, (float(j) + 0.5f) / fine - margin);
+                splatter.splat(at, Rgb(value(at) / (fine * fine)));
+            }
+        });
+    };
+    const auto built = build_scene<Bsdfs<Lambert>, Lights<ConstantEnvironment>>(scene);
+    return render(built, Custom{splat_all}, {.samples = 1});
+}
+
+}  // namespace
+
+TEST_CASE("splats go through the film's filter: a constant stays constant up to the border") {
+    for (const Filter& filter : {Filter::box(), Filter::tent(), Filter::tent(2.5f), Filter::tent(0.5f),
+                                 Filter::gaussian(), Filter::gaussian(1.5f)}) {
+        CAPTURE(filter.name());
+        CAPTURE(filter.radius());
+        const Image image = splatted(filter, [](const Vec2&) { return 1.0f; });
+        // The midpoint rule is exact for tents that begin between the splats, and nearly so for smooth weights.
+        for (const Rgb& p : image.pixels()) CHECK(p.x == doctest::Approx(1).epsilon(3e-3));
+    }
+}
+
+TEST_CASE("splats go through the film's filter: as samples of the pixels would") {
+    // Bright and dark, on the film and beside it; the edges are between the splats.
+    const auto scene = [](const Vec2& at) {
+        return (at.x < 2.25f ? 3.0f : 1.0f) + (at.y > 3.625f ? 0.5f : 0.0f) * at.x;
+    };
+    for (const Filter& filter :
+         {Filter::box(), Filter::tent(), Filter::tent(2.5f), Filter::gaussian(), Filter::gaussian(1.5f)}) {
+        CAPTURE(filter.name());
+        CAPTURE(filter.radius());
+        const Image image = splatted(filter, scene);
+        for (int y = 0; y < 4; ++y)
+            for (int x = 0; x < 8; ++x) {
+                // 256 x 256 midpoints of the unit square, mapped by the filter as camera rays are.
+                double sum = 0;
+                for (int i = 0; i < 256; ++i)
+                    for (int j = 0; j < 256; ++j) {
+                        const Vec2 u((float(i) + 0.5f) / 256, (float(j) + 0.5f) / 256);
+                        sum += double(scene(Vec2(float(x) + 0.5f, float(y) + 0.5f) + filter.sample(u)));
+                    }
+                // 256 points place an edge to within 1/256 of the light on its other side, which is at most 4.
+                CAPTURE(x);
+                CAPTURE(y);
+                CHECK(std::abs(double(image(x, y).x) - sum / 65536) < 0.02);
+            }
+    }
+}
+
+TEST_CASE("a splat spreads to the pixels within the filter's radius, by its weights") {
+    const Filter filter = Filter::tent(1.25f);
+    SceneDescription<Lambert> description = describe_step(-1000, filter);
+    const auto scene = build_scene<Bsdfs<Lambert>, Lights<ConstantEnvironment>>(description);
+    for (const Vec2 at :
+         {Vec2(3.2f, 1.9f), Vec2(0.1f, 0.2f), Vec2(15.9f, 3.9f), Vec2(-0.5f, 2), Vec2(16.6f, 4.7f), Vec2(7, 2)}) {
+        const auto splat_one = [&](auto& frame) {
+            frame.paths(1, [&](std::uint64_t, auto&, auto& splatter) { splatter.splat(at, Rgb(1, 2, 4)); });
+        };
+        const Image image = render(scene, Custom{splat_one}, {.samples = 1});
+        for (int y = 0; y < 4; ++y)
+            for (int x = 0; x < 16; ++x) {
+                const float weight = filter.pdf(at - Vec2(float(x) + 0.5f, float(y) + 0.5f));
+                CHECK(image(x, y).x == doctest::Approx(double(weight)));
+                CHECK(image(x, y).z == doctest::Approx(4 * double(weight)));
+            }
+    }
+    // Not finite, value or place: counted once, whatever the number of pixels. Far away: nothing.
+    const auto splat_nan = [&](auto& frame) {
+        frame.paths(1, [](std::uint64_t, auto&, auto& splatter) {
+            splatter.splat({3.2f, 1.9f}, Rgb(infinity));
+            splatter.splat({3.2f, std::numeric_limits<float>::quiet_NaN()}, Rgb(1));
+            splatter.splat({infinity, 1.9f}, Rgb(1));
+            splatter.splat({3e38f, 1.9f}, Rgb(infinity));
+            splatter.splat({-3e38f, 3e38f}, Rgb(1));
+        });
+    };
+    const Custom method{splat_nan};
+    Session<TinyScene, std::remove_cvref_t<decltype(method)>> session(scene, method);
+    session.run({.samples = 1});
+    CHECK(session.statistics().counts.non_finite == 3);
+    CHECK(session.film().image().mean() == DVec3(0));
 }

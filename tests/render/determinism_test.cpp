@@ -3,9 +3,14 @@
 #include "support/light_tracer.hpp"
 #include "support/random_scenes.hpp"
 #include "support/renders.hpp"
+#include "support/statistics.hpp"
 
+#include <lightswitch/method/bdpt.hpp>
+#include <lightswitch/method/light_tracer.hpp>
 #include <lightswitch/method/path_tracer_nee.hpp>
 #include <lightswitch/method/phong.hpp>
+#include <lightswitch/method/photon_mapping.hpp>
+#include <lightswitch/method/vcm.hpp>
 
 #include <doctest/doctest.h>
 
@@ -70,10 +75,139 @@ TEST_CASE("Phong is the same for any threads, and when continued") {
 TEST_CASE("splats are the same for any threads, and when continued") {
     const LibraryDescription box = small_box();
     const DiffuseScene scene = build_scene<DiffuseBsdfs, Lights<TriangleLight>>(box);
-    LightTracer method = light_tracer_for(box, scene);
+    test::LightTracer method = light_tracer_for(box, scene);
     method.bounces = 3;
     method.paths = 10000;  // several work units, the last one not full
     check_determinism(scene, method);
+}
+
+namespace {
+
+LibraryDescription light_scene() {
+    LibraryDescription description = random_scene(2);
+    description.film.width = 53;
+    description.film.height = 37;
+    return description;
+}
+
+}  // namespace
+
+TEST_CASE("light tracing is the same for any threads, and when continued") {
+    check_determinism(build_scene<AllBsdfs, AllLights>(light_scene()), lightswitch::LightTracer{});
+}
+
+TEST_CASE("bidirectional path tracing is the same for any threads, and when continued") {
+    check_determinism(build_scene<AllBsdfs, AllLights>(light_scene()), Bdpt{});
+}
+
+TEST_CASE("photon mapping is the same for any threads, and when continued") {
+    check_determinism(build_scene<AllBsdfs, AllLights>(light_scene()), PhotonMapping{.paths_per_pixel = 1.7});
+    check_determinism(build_scene<AllBsdfs, AllLights>(light_scene()), PhotonMapping{.final_gather = true});
+}
+
+TEST_CASE("vertex connection and merging is the same for any threads, and when continued") {
+    check_determinism(build_scene<AllBsdfs, AllLights>(light_scene()), Vcm{});
+}
+
+TEST_CASE("every scale by a power of two gives the same bits with paths from the lights") {
+    for (LibraryDescription description : {random_scene(2), small_box(24, 24)}) {
+        description.camera.near_clip = 0.01;
+        const auto scaled = [&](int k) {
+            LibraryDescription result = description;
+            const double factor = std::ldexp(1.0, k);
+            for (auto& shape : result.shapes) {
+                if (auto* mesh = std::get_if<Mesh>(&shape.geometry)) {
+                    for (DVec3& p : mesh->positions) p *= factor;
+                } else {
+                    std::get<Sphere>(shape.geometry).center *= factor;
+                    std::get<Sphere>(shape.geometry).radius *= factor;
+                }
+            }
+            auto& camera = result.camera;
+            camera.to_world[3] = glm::dvec4(DVec3(camera.to_world[3]) * factor, 1);
+            for (double* length : {&camera.aperture_radius, &camera.focus_distance, &camera.near_clip})
+                *length *= factor;
+            return build_scene<AllBsdfs, AllLights>(result);
+        };
+        const FullScene original = scaled(0);
+        for (const int k : {-40, -3, 40}) {
+            CAPTURE(k);
+            const FullScene other = scaled(k);
+            const auto check = [&](const auto& method) {
+                const Image image = render(original, method, {.samples = 3});
+                CHECK(image.mean().y > 0);
+                CHECK_MESSAGE(identical(image, render(other, method, {.samples = 3})), method.name);
+            };
+            check(lightswitch::LightTracer{});
+            check(Bdpt{});
+            check(PhotonMapping{});
+            check(PhotonMapping{.final_gather = true});
+            check(Vcm{});
+        }
+    }
+}
+
+namespace {
+
+/// Draws numbers in several passes of one iteration and keeps them: `order` says which passes, p for pixels and l for
+/// paths.
+struct Passes {
+    static constexpr std::string_view name = "passes";
+    static constexpr Kind kind = Kind::heuristic;
+    std::string order;
+    std::vector<std::vector<std::vector<Vec2>>>* drawn;  // by pass, index and iteration
+
+    int start(auto&) const { return 0; }
+    void iterate(auto& frame, int&) const {
+        const std::size_t n = std::size_t(frame.width()) * std::size_t(frame.height());
+        drawn->resize(order.size(), std::vector<std::vector<Vec2>>(n));
+        for (std::size_t pass = 0; pass < order.size(); ++pass) {
+            auto& mine = (*drawn)[pass];
+            if (order[pass] == 'p')
+                frame.pixels([&](const Ray&, auto& sampler, const PixelContext& pixel) {
+                    mine[pixel.index].push_back(sampler.next_2d());
+                    return Rgb(0);
+                });
+            else frame.paths(n, [&](std::uint64_t i, auto& sampler, auto&) { mine[i].push_back(sampler.next_2d()); });
+        }
+    }
+};
+
+std::vector<std::vector<std::vector<Vec2>>> draw_passes(const std::string& order, int iterations, Sampling sampling) {
+    static const DiffuseScene scene = build_scene<DiffuseBsdfs, Lights<TriangleLight>>(small_box(4, 2));
+    std::vector<std::vector<std::vector<Vec2>>> drawn;
+    render(scene, Passes{order, &drawn}, {.samples = iterations}, {.seed = 21, .sampling = sampling});
+    return drawn;
+}
+
+}  // namespace
+
+// 2 samplings * 10 pairs of passes * 8 indices * 2 correlations of 4096 products: at 6 standard errors, 6e-7 in all.
+TEST_CASE("every pass over pixels or paths of an iteration has numbers of its own") {
+    for (const Sampling sampling : {Sampling::sobol, Sampling::independent}) {
+        const auto drawn = draw_passes("plplp", 4096, sampling);
+        REQUIRE(drawn.size() == 5);
+        for (std::size_t a = 0; a < drawn.size(); ++a)
+            for (std::size_t b = a + 1; b < drawn.size(); ++b)
+                for (std::size_t i = 0; i < 8; ++i) {
+                    UniformCorrelation same, crossed;
+                    int equal = 0;
+                    for (std::size_t n = 0; n < 4096; ++n) {
+                        const Vec2 p = drawn[a][i][n], q = drawn[b][i][n];
+                        same.add(double(p.x), double(q.x));
+                        crossed.add(double(p.x), double(q.y));
+                        equal += p.x == q.x;
+                    }
+                    CHECK(std::abs(same.sigmas()) < 6);
+                    CHECK(std::abs(crossed.sigmas()) < 6);
+                    CHECK(equal < 4);
+                }
+        // The first pass over pixels is the same whatever comes before it: all methods see the same camera rays.
+        CHECK(draw_passes("p", 16, sampling)[0] == draw_passes("llp", 16, sampling)[2]);
+        CHECK(draw_passes("p", 16, sampling)[0] == draw_passes("pp", 16, sampling)[0]);
+        CHECK(draw_passes("lp", 16, sampling)[0] == draw_passes("pl", 16, sampling)[1]);
+        CHECK(draw_passes("pp", 16, sampling)[0] != draw_passes("pp", 16, sampling)[1]);
+    }
 }
 
 TEST_CASE("sampling methods differ, and say so in the image") {

@@ -13,9 +13,26 @@ namespace lightswitch {
 struct Photon {
     Vec3 position;
     Vec3 from;  ///< unit, where the light came from
-    Rgb power;
+    Rgb power;  ///< as the shading normal has it: times the cosine to that normal, over the cosine to the true one
     int edges;  ///< segments of its path from the light
 };
+
+/// What a light path leaves at its vertex.
+inline Photon photon_at(const PathVertex& y) {
+    const float true_cosine = std::abs(dot(y.point.normal, y.point.wo));
+    const float cosine = std::abs(dot(y.point.shading_normal, y.point.wo));
+    return {y.point.position, y.point.wo, y.throughput * (cosine / true_cosine), y.edges};
+}
+
+/// The BSDF between the light that a photon brought and the direction that the camera path came from, with its densities.
+[[gnu::always_inline]] inline Turn photon_turn(const auto& scene, const SurfacePoint& at, const Arrival& arrival,
+                                               const Photon& photon) {
+    Turn result = turn<Transport::radiance>(scene, at, arrival, photon.from);
+    // The photon brings its cosine along.
+    const float cosine = std::abs(dot(at.shading_normal, photon.from));
+    result.value = cosine > 0 ? result.value / cosine : Rgb(0);
+    return result;
+}
 
 /// A photon that also knows what its path counts against other strategies. A copy of what merging needs of a `PathVertex`, so that all
 /// of it is in one place of memory.
@@ -64,13 +81,11 @@ inline MergeWeights merge_weights(double light_paths, double radius) {
 /// radius^2, by which the sum over all vertices within the radius is divided.
 [[gnu::always_inline]] inline Contribution merge(const auto& scene, const WeighedPhoton& y, const PathVertex& z, const Arrival& at_z,
                                                  double merges, const MergeWeights& weights) {
-    const Turn at = turn<Transport::radiance>(scene, z.point, at_z, y.from);
-    // Power was spread over the true surface, and counts by the cosine to the shading normal.
-    const float cosine = std::abs(dot(z.point.normal, y.from));
-    if (is_black(at.value) || !(cosine > 0)) return {};
+    const Turn at = photon_turn(scene, z.point, at_z, y);
+    if (is_black(at.value)) return {};
     const double fewer = y.last * weights.connect + y.merges * heuristic(at.pdf.value);
     const double more = z.weights.last * weights.connect + z.weights.merges * heuristic(at.reverse_pdf.value);
-    return {z.throughput * at.value * y.power * static_cast<float>(1 / (cosine * merges)),
+    return {z.throughput * at.value * y.power * static_cast<float>(1 / merges),
             strategy_weight(fewer, more)};
 }
 

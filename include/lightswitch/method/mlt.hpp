@@ -1,5 +1,6 @@
 #pragma once
 
+#include <lightswitch/method/brightness_guide.hpp>
 #include <lightswitch/method/connection.hpp>
 #include <lightswitch/method/depth_choice.hpp>
 #include <lightswitch/method/primary_space.hpp>
@@ -59,6 +60,7 @@ struct Mlt {
         double normalization() const { return drawn > 0 ? sum / double(drawn) : 0; }
 
         DepthChoice depths;
+        BrightnessGuide guide;
         std::vector<Chain> chains, next;
         double sum = 0;  // of the targets of `drawn` independent paths
         std::uint64_t drawn = 0;
@@ -68,18 +70,20 @@ struct Mlt {
     State start(auto& frame) const {
         State state;
         if (max_depth == 0 || max_depth == 1) return state;
-        // A few paths tell which lengths matter; they are not used for anything else.
+        // The first paths tell which lengths matter and where the image is bright; they are not used for anything else.
         state.depths = DepthChoice(max_depth);
+        state.guide = BrightnessGuide(frame.width(), frame.height());
         std::vector<double> power;
-        const auto pilot = draw(frame, state.depths, std::max(bootstrap / 8, 1));
+        const auto pilot = draw(frame, state, std::max(bootstrap / 2, 1));
         for (const Seed& seed : pilot) {
             const auto depth = static_cast<std::size_t>(seed.depth);
             if (depth >= power.size()) power.resize(depth + 1);
             power[depth] += seed.target;
         }
         state.depths.learn(power);
+        state.guide.learn(pilot);
 
-        const auto seeds = draw(frame, state.depths, std::max(bootstrap, 1));
+        const auto seeds = draw(frame, state, std::max(bootstrap, 1));
         for (const Seed& seed : seeds) state.sum += seed.target;
         state.drawn = seeds.size();
         if (frame.stopped() || !(state.sum > 0)) return state;
@@ -94,7 +98,7 @@ struct Mlt {
             for (; filled < state.chains.size() && next < sum; next += step, ++filled) {
                 auto& chain = state.chains[filled];
                 chain = {.sample = PrimarySample(seed.seed), .depth = seed.depth, .current = {}};
-                chain.current = evaluate(frame, chain.sample, state.depths, chain.depth, nullptr);
+                chain.current = evaluate(frame, chain.sample, state, chain.depth, nullptr);
                 // Chains that begin alike must not go on alike.
                 chain.sample.random() = RandomSequence(detail::mix64(seed.seed + filled));
             }
@@ -119,7 +123,7 @@ struct Mlt {
                 auto& chain = state.next[index] = state.chains[index];
                 chain.steps = chain.accepted = chain.large = 0;
                 chain.large_sum = 0;
-                walk(frame, state.depths, chain, mutations, share, splatter);
+                walk(frame, state, chain, mutations, share, splatter);
             },
             1);
         if (frame.stopped()) return;
@@ -141,24 +145,27 @@ private:
     struct Seed {
         std::uint64_t seed = 0;
         int depth = 2;
+        Vec2 pixel{0};
         double target = 0;
     };
 
-    std::vector<Seed> draw(auto& frame, const DepthChoice& depths, int n) const {
+    std::vector<Seed> draw(auto& frame, const State& state, int n) const {
         std::vector<Seed> seeds(static_cast<std::size_t>(n));
         frame.paths(seeds.size(), [&](std::uint64_t index, auto& sampler, auto& splatter) {
             const Vec2 a = sampler.next_2d(), b = sampler.next_2d();
             const auto bits = [](float u) { return static_cast<std::uint64_t>(u * 0x1p24f); };
             Seed& seed = seeds[index];
             seed.seed = bits(a.x) | bits(a.y) << 24 | bits(b.x) << 48;
-            seed.depth = depths.sample(double(b.y) + double(a.x) * 0x1p-24);
+            seed.depth = state.depths.sample(double(b.y) + double(a.x) * 0x1p-24);
             PrimarySample sample(seed.seed);
-            seed.target = evaluate(frame, sample, depths, seed.depth, &splatter).target;
+            const Sample found = evaluate(frame, sample, state, seed.depth, &splatter);
+            seed.pixel = found.pixel;
+            seed.target = found.target;
         });
         return seeds;
     }
 
-    void walk(const auto& frame, const DepthChoice& depths, auto& chain, std::uint64_t mutations, double share,
+    void walk(const auto& frame, const State& state, auto& chain, std::uint64_t mutations, double share,
               auto& splatter) const {
         const auto splat = [&](const Sample& sample, double weight) {
             if (weight > 0 && sample.target > 0)
@@ -168,8 +175,8 @@ private:
         for (std::uint64_t i = 0; i < mutations; ++i) {
             const bool large = chain.sample.random().next() < double(large_steps);
             chain.sample.propose(large);
-            const int depth = large ? depths.sample(chain.sample.random().next()) : chain.depth;
-            const Sample proposed = evaluate(frame, chain.sample, depths, depth, &splatter);
+            const int depth = large ? state.depths.sample(chain.sample.random().next()) : chain.depth;
+            const Sample proposed = evaluate(frame, chain.sample, state, depth, &splatter);
             const double acceptance =
                 chain.current.target > 0 ? std::min(1.0, proposed.target / chain.current.target) : 1;
             ++chain.steps;
@@ -195,7 +202,7 @@ private:
     }
 
     /// The path of `depth` segments that the random numbers describe. What is not finite is told to `splatter` and counts as black.
-    Sample evaluate(const auto& frame, PrimarySample& sample, const DepthChoice& depths, int depth, Splatter* splatter) const {
+    Sample evaluate(const auto& frame, PrimarySample& sample, const State& state, int depth, Splatter* splatter) const {
         const auto& scene = frame.scene();
         const Camera& camera = scene.camera();
         PrimarySample::Reader control(sample, strategy_stream), on_camera(sample, camera_stream), on_light(sample, light_stream);
@@ -244,12 +251,12 @@ private:
             }
         }
         if (s > 0 && !visible(scene, found)) return {};
-        result.value = found.value * static_cast<float>(double(found.weight) * area * strategies / depths.probability(depth));
+        result.value = found.value * static_cast<float>(double(found.weight) * area * strategies / state.depths.probability(depth));
         if (!is_finite(result.value)) {
             if (splatter) splatter->splat(result.pixel, result.value);
             return {};
         }
-        result.target = double(luminance(result.value));
+        result.target = double(luminance(result.value)) / double(state.guide(result.pixel));
         return result;
     }
 

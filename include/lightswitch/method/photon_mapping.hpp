@@ -53,7 +53,7 @@ struct PhotonMapping {
         frame.paths(light_paths, [&](std::uint64_t path, auto& sampler, auto&) {
             state.paths.start(path);
             trace_light_subpath(scene, sampler, {max_depth, rr_depth}, {}, [&](const PathVertex& y) {
-                state.paths.push(path, {y.point.position, y.point.wo, y.throughput, y.edges});
+                state.paths.push(path, photon_at(y));
             });
         });
         if (frame.stopped()) return;
@@ -115,8 +115,7 @@ private:
         const Arrival arrival(at);
         map.for_each_near(at.position, [&](const Photon& photon) {
             if (max_depth >= 0 && depth + photon.edges > max_depth) return;
-            const float cosine = std::abs(dot(at.normal, photon.from));
-            if (cosine > 0) sum += turn<Transport::radiance>(scene, at, arrival, photon.from).value * photon.power / cosine;
+            sum += photon_turn(scene, at, arrival, photon).value * photon.power;
         });
         return map.radius() > 0 ? sum * (1 / (pi * square(map.radius()))) : Rgb(0);
     }

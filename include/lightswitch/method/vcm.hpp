@@ -60,7 +60,7 @@ struct Vcm {
         if (frame.stopped()) return;
         if (r > 0) {
             state.paths.list(state.photons, frame.executor(), [](const PathVertex& y) {
-                return WeighedPhoton{{y.point.position, y.point.wo, y.throughput, y.edges}, y.weights.last, y.weights.merges};
+                return WeighedPhoton{photon_at(y), y.weights.last, y.weights.merges};
             });
             state.map.build(state.photons, r, frame.executor());
         }
