@@ -3,6 +3,7 @@
 // The ways in which a path from the camera and one from a light become a whole path: strategies, in Veach's words (s, t) with s
 // vertices from the light and t from the camera.
 
+#include <lightswitch/core/sampler.hpp>
 #include <lightswitch/method/subpath.hpp>
 
 #include <span>

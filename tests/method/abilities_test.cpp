@@ -1,0 +1,116 @@
+// What the table of methods in the README says of each: one test per column, all methods in each.
+
+#include <lightswitch/render/any_method.hpp>
+#include <lightswitch/render/render.hpp>
+#include <lightswitch/scene/stock.hpp>
+
+#include <doctest/doctest.h>
+
+#include <map>
+
+using namespace lightswitch;
+
+namespace {
+
+/// A glass sphere above a white floor, lit from above.
+LibraryDescription describe_glass_sphere() {
+    LibraryDescription scene;
+    scene.add(quad({-3, 0, 3}, {3, 0, 3}, {3, 0, -3}, {-3, 0, -3}), scene.add(Lambert{Rgb(0.8f)}));
+    scene.add(Sphere{{0, 1, 0}, 0.5}, scene.add(Dielectric{.eta = 1.5f}));
+    scene.add(PointSource{{0, 3, 0}, Rgb(10)});
+    scene.camera.fov = 6;
+    scene.film.width = scene.film.height = 16;
+    return scene;
+}
+
+/// Looking at `target` from `eye`.
+void look(LibraryDescription& scene, const DVec3& eye, const DVec3& target) {
+    scene.camera.to_world = CameraDescription::look_at(eye, target, {0, 1, 0});
+}
+
+/// From above, beside the sphere.
+void look_at_floor(LibraryDescription& scene) {
+    look(scene, {1.8, 2, 0}, {1.8, 0, 0.1});
+    scene.camera.fov = 50;
+}
+
+/// The image's mean by every method that shows light, over that of `reference`. Fixed seeds: the same numbers on every run.
+std::map<std::string_view, double> shares(const LibraryDescription& description, std::string_view reference, int samples) {
+    const FullScene scene = build_scene<AllBsdfs, AllLights>(description);
+    std::map<std::string_view, double> means;
+    for_each_method([&](auto method) {
+        if (method.kind == Kind::heuristic) return;
+        if constexpr (requires { method.bootstrap; }) method.bootstrap = 1 << 18;
+        Session session(scene, method);
+        session.run({.samples = samples});
+        CHECK(session.statistics().counts.non_finite == 0);
+        const DVec3 mean = session.image().mean();
+        means[method.name] = mean.x + mean.y + mean.z;
+    });
+    REQUIRE(means[reference] > 0);
+    const double whole = means[reference];
+    for (auto& [name, mean] : means) mean /= whole;
+    return means;
+}
+
+/// Those named show it all, within `tolerance`; the others hardly any of it.
+void check_only(const std::map<std::string_view, double>& shares, std::initializer_list<std::string_view> able, double tolerance) {
+    REQUIRE(shares.size() == 7);
+    for (const auto& [name, share] : shares) {
+        CAPTURE(name);
+        if (std::find(able.begin(), able.end(), name) != able.end())
+            CHECK(std::abs(share - 1) < tolerance);
+        else
+            CHECK(share < 0.3);  // what comes by other ways than the one that is asked for
+    }
+}
+
+}  // namespace
+
+TEST_CASE("abilities: the caustic of a point light on a diffuse surface") {
+    LibraryDescription scene = describe_glass_sphere();
+    look(scene, {2, 0.35, 0}, {0, 0, 0});  // below the sphere, where no light comes but through it
+    check_only(shares(scene, "vcm", 256), {"light", "bdpt", "photon", "vcm", "mlt"}, 0.1);
+}
+
+TEST_CASE("abilities: the caustic of a point light, seen in a mirror") {
+    LibraryDescription scene = describe_glass_sphere();
+    scene.add(quad({2, 0, -1}, {2, 0, 1}, {2, 1, 1}, {2, 1, -1}), scene.add(TwoSided<Conductor>{}));
+    look(scene, {1, 0.35, 0}, {4, 0, 0});  // the mirror image of the place below the sphere
+    check_only(shares(scene, "vcm", 256), {"photon", "vcm"}, 0.1);
+}
+
+TEST_CASE("abilities: a diffuse surface under a point light") {
+    LibraryDescription scene = describe_glass_sphere();
+    look_at_floor(scene);
+    check_only(shares(scene, "path-nee", 512), {"path-nee", "light", "bdpt", "photon", "vcm", "mlt"}, 0.04);
+}
+
+TEST_CASE("abilities: a diffuse surface under a sky") {
+    LibraryDescription scene = describe_glass_sphere();
+    scene.sources.clear();
+    scene.add(EnvironmentSource{Rgb(1)});
+    look_at_floor(scene);
+    check_only(shares(scene, "path-nee", 512), {"path", "path-nee", "light", "bdpt", "photon", "vcm", "mlt"}, 0.04);
+}
+
+TEST_CASE("abilities: a lamp's reflection in rough metal") {
+    LibraryDescription scene;
+    scene.add(quad({-3, 0, 3}, {3, 0, 3}, {3, 0, -3}, {-3, 0, -3}), scene.add(RoughConductor{.alpha = 0.15f}));
+    scene.add(quad({-0.5, 2, -0.5}, {0.5, 2, -0.5}, {0.5, 2, 0.5}, {-0.5, 2, 0.5}), scene.add(Lambert{Rgb(0)}), Rgb(10));
+    scene.camera.fov = 20;
+    scene.film.width = scene.film.height = 16;
+    look(scene, {1.5, 2, 0}, {0.75, 0, 0});
+    check_only(shares(scene, "path-nee", 128), {"path", "path-nee", "light", "bdpt", "photon", "vcm", "mlt"}, 0.05);
+}
+
+TEST_CASE("abilities: a diffuse surface seen in a mirror") {
+    LibraryDescription scene;
+    scene.add(quad({-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}), scene.add(Lambert{Rgb(0.8f)}));
+    scene.add(quad({2, 0, -1}, {2, 0, 1}, {2, 1, 1}, {2, 1, -1}), scene.add(TwoSided<Conductor>{}));
+    scene.add(quad({-1, 2, -1}, {1, 2, -1}, {1, 2, 1}, {-1, 2, 1}), scene.add(Lambert{Rgb(0)}), Rgb(1));
+    scene.camera.fov = 6;
+    scene.film.width = scene.film.height = 16;
+    look(scene, {1, 0.6, 0}, {4, 0, 0});
+    check_only(shares(scene, "path-nee", 512), {"path", "path-nee", "bdpt", "photon", "vcm", "mlt"}, 0.05);
+}
