@@ -19,7 +19,7 @@ namespace ls = lightswitch;
 
 namespace {
 
-constexpr int image_size = 144, samples = 128, reference_samples = 1024;
+constexpr int image_size = 144, samples = 64, reference_samples = 1024;
 constexpr float largest_difference = 0.5f;  // at the ends of the colour maps, the same for all
 
 struct Entry {

@@ -20,6 +20,10 @@ run_samples() {
   run ../lightswitch render cornell-spheres --spp 64 --seed 1 --output spheres.exr --output spheres.png
   run ../lightswitch render cornell-spheres --spp 64 --method path --output spheres-path.exr --stats spheres-path.json
   run ../lightswitch compare spheres.exr spheres-path.exr --output spheres-difference.png
+  for method in light bdpt photon vcm mlt; do
+    run ../lightswitch render cornell-spheres --spp 16 --method $method --output spheres-$method.png --output spheres-$method.exr
+  done
+  run ../lightswitch strategies cornell-spheres --size 96x96 --spp 16 --output spheres-strategies.png
   run ../01_minimal
   run ../02_switch phong
   run ../03_own_method
@@ -27,7 +31,7 @@ run_samples() {
   run ../05_comparison .
   run ../06_verify
   run ../lightswitch compare spheres.exr spheres-path.exr --report spheres.html
-  run ../lightswitch verify furnace --report furnace-verdict.html
+  run ../lightswitch verify furnace --methods path-nee,bdpt --report furnace-verdict.html
 
   echo "samples: the pictures are in $PWD"
   return $status

@@ -38,8 +38,19 @@ struct MaterialName {
     }
 };
 
+struct IsSpecular {
+    bool operator()(const auto&) const { return false; }
+    bool operator()(const Conductor&) const { return true; }
+    bool operator()(const Dielectric&) const { return true; }
+    template <class Inner>
+    bool operator()(const TwoSided<Inner>& bsdf) const {
+        return (*this)(bsdf.inner);
+    }
+};
+
 SceneSummary summarize(const LibraryDescription& scene) {
     SceneSummary summary{.camera = scene.camera,
+                         .size = {scene.film.width, scene.film.height},
                          .max_depth = scene.max_depth,
                          .rr_depth = scene.rr_depth,
                          .samples = scene.samples,
@@ -54,7 +65,10 @@ SceneSummary summarize(const LibraryDescription& scene) {
         if (std::holds_alternative<PointSource>(placed.source)) ++summary.point_lights;
         if (std::holds_alternative<DirectionalSource>(placed.source)) ++summary.directional_lights;
     }
-    for (const auto& material : scene.materials) ++summary.materials[std::visit(MaterialName{}, material.bsdf)];
+    for (const auto& material : scene.materials) {
+        ++summary.materials[std::visit(MaterialName{}, material.bsdf)];
+        summary.specular |= std::visit(IsSpecular{}, material.bsdf);
+    }
     return summary;
 }
 

@@ -12,10 +12,12 @@ namespace lightswitch::program {
 /// What a scene was described with: all that the program wants to know of a description, whose meshes are not kept.
 struct SceneSummary {
     CameraDescription camera;
+    Size size;
     std::optional<int> max_depth, rr_depth, samples;
     std::size_t meshes = 0, luminous_meshes = 0, luminous_spheres = 0;
     std::size_t environments = 0, point_lights = 0, directional_lights = 0;
     std::map<std::string, std::size_t> materials;  ///< by kind
+    bool specular = false;                         ///< some material is a mirror or clear glass
 };
 
 struct LoadedScene {

@@ -20,7 +20,7 @@
 namespace lightswitch::program {
 namespace {
 
-constexpr std::array<std::string_view, 5> commands{"render", "compare", "verify", "methods", "info"};
+constexpr std::array<std::string_view, 6> commands{"render", "compare", "verify", "strategies", "methods", "info"};
 /// CLI11's help, with a usage line that shows what must be given.
 class Help : public CLI::Formatter {
 public:
@@ -32,6 +32,7 @@ public:
             return usage("verify SCENE [OPTIONS]\n"
                          "       lightswitch verify SCENE --images FILES [OPTIONS]\n"
                          "       lightswitch verify --images FILES --against FILES [OPTIONS]");
+        if (command == "strategies") return usage("strategies SCENE --output FILE [OPTIONS]");
         if (command == "info") return usage("info SCENE [OPTIONS]");
         if (command == "methods") return usage("methods");
         return usage("COMMAND [OPTIONS]");
@@ -85,15 +86,19 @@ int run_command(int argc, char** argv) {
     RenderOptions render_options;
     CompareOptions compare_options;
     VerifyCommand verify_options;
+    StrategiesCommand strategies_options;
     SceneOptions info_options;
     CLI::App& render_command = *app.add_subcommand("render", "Render a scene to image files");
     CLI::App& compare_command = *app.add_subcommand("compare", "Measure and show how images differ");
     CLI::App& verify_command = *app.add_subcommand("verify", "Tell whether methods have the same expected image");
+    CLI::App& strategies_command =
+        *app.add_subcommand("strategies", "Show what each strategy of bidirectional path tracing finds");
     CLI::App& methods_command = *app.add_subcommand("methods", "List the methods: kind, what each can and cannot do");
     CLI::App& info_command = *app.add_subcommand("info", "Tell what a scene requires");
     add_render(render_command, render_options);
     add_compare(compare_command, compare_options);
     add_verify(verify_command, verify_options);
+    add_strategies(strategies_command, strategies_options);
     add_scene_options(info_command, info_options);
     for (CLI::App* command : app.get_subcommands({})) command->allow_extras();
 
@@ -118,11 +123,14 @@ int run_command(int argc, char** argv) {
     if (&command == &methods_command) return list_methods();
     if (&command == &compare_command) return compare(compare_options);
     if (&command == &verify_command) return verify(verify_options);
-    const SceneOptions& scene = &command == &info_command ? info_options : render_options.scene;
+    const SceneOptions& scene = &command == &info_command         ? info_options
+                                : &command == &strategies_command ? strategies_options.scene
+                                                                  : render_options.scene;
     if (scene.scene.empty())
         throw Error(fmt::format("{}: name a scene: a file that ends in .xml, or one of {}", command.get_name(),
                                 list(stock::names)));
-    return &command == &info_command ? info(info_options) : render(render_options);
+    if (&command == &info_command) return info(info_options);
+    return &command == &strategies_command ? strategies(strategies_options) : render(render_options);
 }
 
 /// Where a standard stream is closed, a file opened later would take its place and receive what is meant for it. Opened

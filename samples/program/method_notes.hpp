@@ -14,6 +14,7 @@ struct MethodNotes {
     std::string_view can;
     std::string_view cannot;
     bool sees_dirac_lights = true;  ///< point and directional lights, which no ray meets by chance
+    bool sees_in_mirrors = true;    ///< and through glass
 };
 
 inline constexpr std::array method_notes{
@@ -26,12 +27,12 @@ inline constexpr std::array method_notes{
     MethodNotes{PathTracerNee::name, "all light transport, lamps sampled directly: the best choice for most scenes",
                 "find caustics of point and directional lights; those of small lamps are noisy"},
     MethodNotes{LightTracer::name, "light from the lamps' side: sharp caustics, point lights, lamps seen directly",
-                "show what is seen in a mirror or through glass"},
+                "show what is seen in a mirror or through glass", true, false},
     MethodNotes{Bdpt::name, "all light transport, paths from both sides joined in every way: hidden lamps, caustics",
                 "find caustics of point lights in mirrors; a sample costs several times one of path-nee"},
-    MethodNotes{PhotonMapping::name, "caustics, also seen in mirrors, and smooth indirect light, blurred within a shrinking radius",
+    MethodNotes{PhotonMapping::name, "caustics, also in mirrors, and smooth indirect light, blurred within a shrinking radius",
                 "be sharp at once: its error falls slowly; glossy surfaces are noisy"},
-    MethodNotes{Vcm::name, "all light transport: bdpt that also merges nearby paths, so caustics seen in mirrors, too",
+    MethodNotes{Vcm::name, "all light transport: bdpt that also merges nearby paths, so caustics in mirrors, too",
                 "be exact at once where it merges; takes memory for all light paths of an iteration"},
     MethodNotes{Mlt::name, "all light transport, by chains that stay where light is found: hidden lamps, caustics",
                 "spread its noise evenly: errors are blotches, and the brightness settles with the work"},

@@ -1,7 +1,7 @@
 #include "options.hpp"
 
 #include "method_notes.hpp"
-#include "text.hpp"
+#include "values.hpp"
 
 #include <lightswitch/scene/stock.hpp>
 
@@ -9,30 +9,6 @@
 
 namespace lightswitch::program {
 namespace {
-
-constexpr long long unlimited = std::numeric_limits<long long>::max();
-constexpr int most_threads = 1024;
-
-/// A value that is given at most once and that `set(text)` checks and stores.
-template <class Set>
-CLI::Option* add_value(CLI::App& app, const std::string& name, const std::string& type, Set set,
-                       const std::string& help) {
-    return app.add_option_function<std::string>(name, std::function<void(const std::string&)>(set), help)
-        ->type_name(type);
-}
-
-/// A value that may be given several times, one at a time.
-template <class Set>
-void add_values(CLI::App& app, const std::string& name, const std::string& type, Set set, const std::string& help) {
-    app.add_option_function<std::vector<std::string>>(
-           name,
-           [set](const std::vector<std::string>& texts) {
-               for (const std::string& text : texts) set(text);
-           },
-           help)
-        ->type_name(type)
-        ->allow_extra_args(false);
-}
 
 void add_outputs(CLI::App& app, std::vector<std::filesystem::path>& outputs, const std::string& help) {
     add_values(
@@ -76,18 +52,11 @@ Sampling parse_sampling(std::string_view text) {
 }
 
 int parse_max_depth(std::string_view text) {
-    const auto depth = static_cast<int>(parse_integer_option("--max-depth", text, -1, std::numeric_limits<int>::max()));
+    const int depth = parse_int("--max-depth", text, -1);
     if (depth == 0)
         throw Error(
             "--max-depth: 0 would show nothing; 1 is emission seen directly, 2 adds direct light, -1 is unlimited");
     return depth;
-}
-
-float parse_float(std::string_view option, std::string_view text, double least, bool above) {
-    const auto value = static_cast<float>(parse_number_option(option, text, least, above));
-    if (!is_finite(value) || (above && !(static_cast<double>(value) > least)))
-        throw Error(fmt::format("{}: \"{}\" is beyond the range of single precision", option, text));
-    return value;
 }
 
 }  // namespace
@@ -124,11 +93,7 @@ void add_render(CLI::App& app, RenderOptions& options) {
     add_outputs(app, options.outputs,
                 "image to write, by extension: .exr, .pfm, .hdr (linear) or .png\n(exposure, sRGB); may be repeated");
     add_value(
-        app, "--spp", "N",
-        [&](const std::string& text) {
-            options.budget.samples =
-                static_cast<int>(parse_integer_option("--spp", text, 1, std::numeric_limits<int>::max()));
-        },
+        app, "--spp", "N", [&](const std::string& text) { options.budget.samples = parse_int("--spp", text, 1); },
         "samples per pixel (default: what the scene asks for, or 64)");
     add_value(
         app, "--seconds", "S",
@@ -139,28 +104,14 @@ void add_render(CLI::App& app, RenderOptions& options) {
         [&](const std::string& text) { options.budget.error = parse_number_option("--error", text, 0, true); },
         "estimated root mean square error of a pixel as a fraction of the\nimage's mean (0.01 is 1 %), judged from 16 "
         "samples on");
-    add_value(
-        app, "--seed", "K",
-        [&](const std::string& text) {
-            options.seed = static_cast<std::uint64_t>(parse_integer_option("--seed", text, 0, unlimited));
-        },
-        "another seed gives other noise (default: 0)");
-    add_value(
-        app, "--threads", "T",
-        [&](const std::string& text) {
-            options.threads = static_cast<int>(parse_integer_option("--threads", text, 0, most_threads));
-        },
-        "rendering threads; 0, the default, is one per processor.\nThe image is the same for any number");
+    add_seed(app, options.seed, "another seed gives other noise (default: 0)");
+    add_threads(app, options.threads, ".\nThe image is the same for any number");
     add_value(
         app, "--max-depth", "D", [&](const std::string& text) { options.max_depth = parse_max_depth(text); },
         "path length: 1 is emission seen directly, 2 adds direct light,\n-1 is unlimited (default: the scene's, or "
         "-1)");
     add_value(
-        app, "--rr-depth", "D",
-        [&](const std::string& text) {
-            options.rr_depth =
-                static_cast<int>(parse_integer_option("--rr-depth", text, 0, std::numeric_limits<int>::max()));
-        },
+        app, "--rr-depth", "D", [&](const std::string& text) { options.rr_depth = parse_int("--rr-depth", text, 0); },
         "bounces before Russian roulette begins (default: the scene's, or 5)");
     add_value(
         app, "--sampler", "NAME", [&](const std::string& text) { options.sampling = parse_sampling(text); },
@@ -174,6 +125,7 @@ void add_render(CLI::App& app, RenderOptions& options) {
     app.add_option("--stats", options.stats, "write the render's numbers as JSON; - is standard output")
         ->type_name("FILE.json");
     app.add_flag("-q,--quiet", options.quiet, "no progress and no summary");
+    add_method_options(app, options.of_method);
     app.footer(
         "Of --spp, --seconds and --error the limit that is met first ends the render. Ctrl-C ends it too:\n"
         "the image so far is written; a second Ctrl-C ends the program at once.\n\n"
@@ -182,11 +134,16 @@ void add_render(CLI::App& app, RenderOptions& options) {
         "  lightswitch render cornell-box --output box.png\n"
         "  lightswitch render room.xml --method path --spp 256 --output room.exr --output room.png\n"
         "  lightswitch render room.xml --error 0.02 --seconds 60 --size 640x360 --output room.png\n"
+        "  lightswitch render cornell-spheres --method photon --radius 3 --photon-paths 2 --output caustic.png\n"
         "  lightswitch render cornell-box --spp 16 --stats - --quiet\n\n"
         "Keys of --stats: method, kind, scene, scene_type, width, height, samples_per_pixel, seconds (rendering\n"
         "only), rays, shadow_rays, rays_per_second, samples_per_second, threads, seed, sampler, max_depth,\n"
         "rr_depth, mean, estimated_error, non_finite, first_non_finite, splats, paths, triangles, spheres, lights,\n"
-        "build_seconds, embree_bytes, scene_bytes, camera, embree_version, lightswitch_version, cancelled.");
+        "build_seconds, embree_bytes, scene_bytes, camera, embree_version, lightswitch_version, cancelled.\n"
+        "Methods add their settings (initial_radius_pixels, alpha, paths_per_pixel, final_gather, max_chains,\n"
+        "bootstrap, large_steps, refine) and what they counted, in the last iteration (photons, photon_map_bytes,\n"
+        "light_vertices, radius_pixels) or in all (chains, mutations, acceptance_rate, large_step_rate,\n"
+        "normalization).");
 }
 
 void add_compare(CLI::App& app, CompareOptions& options) {
@@ -254,30 +211,19 @@ void add_verify(CLI::App& app, VerifyCommand& command) {
         "time is over");
     add_value(
         app, "--lengths", "N",
-        [&](const std::string& text) {
-            command.options.path_lengths = static_cast<int>(parse_integer_option("--lengths", text, 0, 64));
-        },
+        [&](const std::string& text) { command.options.path_lengths = parse_int("--lengths", text, 0, 64); },
         "path lengths that are compared one by one (default: 5; longer\nones together)");
     add_value(
         app, "--max-depth", "D", [&](const std::string& text) { command.max_depth = parse_max_depth(text); },
         "path length of the image, as for render");
-    add_value(
-        app, "--seed", "K",
-        [&](const std::string& text) {
-            command.options.seed = static_cast<std::uint64_t>(parse_integer_option("--seed", text, 0, unlimited));
-        },
-        "another seed draws other samples (default: 0)");
-    add_value(
-        app, "--threads", "T",
-        [&](const std::string& text) {
-            command.options.threads = static_cast<int>(parse_integer_option("--threads", text, 0, most_threads));
-        },
-        "rendering threads; 0, the default, is one per processor");
+    add_seed(app, command.options.seed, "another seed draws other samples (default: 0)");
+    add_threads(app, command.options.threads);
     add_value(
         app, "--report", "FILE.html", [&](const std::string& text) { command.report = text; },
         "a page with images, maps of differences and p-values, error over\ntime and all numbers. Needs no network");
     app.add_option("--json", command.json, "write the verdicts as JSON; - is standard output")->type_name("FILE.json");
     app.add_flag("-q,--quiet", command.quiet, "no progress and no text");
+    add_method_options(app, command.of_methods);
     app.footer(
         "Renders independent images by each method and compares them with the reference's by Welch's t-test: all\n"
         "tiles from the whole image down to a few pixels, all path lengths together and one by one. Scenes are\n"
@@ -291,6 +237,39 @@ void add_verify(CLI::App& app, VerifyCommand& command) {
         "  lightswitch verify cornell-box --methods path-nee --report verdict.html\n"
         "  lightswitch verify room.xml --images 'mine/*.exr' --reference path-nee --tolerance 0.005\n"
         "  lightswitch verify --images 'a/*.exr' --against 'b/*.exr' --json verdict.json");
+}
+
+void add_strategies(CLI::App& app, StrategiesCommand& command) {
+    add_scene_options(app, command.scene);
+    add_outputs(app, command.outputs,
+                "picture of all strategies, by extension: .png, .exr, .hdr or .pfm;\nmay be repeated");
+    add_value(
+        app, "--directory", "DIR", [&](const std::string& text) { command.directory = text; },
+        "write each strategy there as s2_t3.exr (linear)");
+    add_value(
+        app, "--max-depth", "D",
+        [&](const std::string& text) { command.max_depth = parse_int("--max-depth", text, 1, most_strategy_depth); },
+        fmt::format("longest path, and number of rows: 1 to {} (default: 5)", most_strategy_depth));
+    add_value(
+        app, "--spp", "N", [&](const std::string& text) { command.samples = parse_int("--spp", text, 1); },
+        "samples per pixel of every strategy (default: 64)");
+    add_seed(app, command.seed, "another seed gives other noise (default: 0)");
+    add_threads(app, command.threads);
+    app.add_flag("--unweighted", command.unweighted,
+                 "every strategy as if there were no other: each finds by\nitself all light of its path length, or "
+                 "none of it");
+    app.add_flag("-q,--quiet", command.quiet, "no progress and no text");
+    app.footer(
+        "Bidirectional path tracing joins s vertices of a path from a light with t vertices of a path from the\n"
+        "camera, the lens included. The picture has a row for every path length, s + t - 1, and in it the strategies\n"
+        "by s, each times its weight of multiple importance sampling: they add up to the image of bdpt, and what is\n"
+        "bright in one is what that strategy is best at (Veach 1997, figure 10.3). All tiles share one exposure: the\n"
+        "brightest percent of their pixels is white. Scenes are rendered with at most 128 pixels a side, unless\n"
+        "--size says more.\n\n"
+        "Exit status: 0 done, 2 an error of which one line on standard error tells, 130 cancelled.\n\n"
+        "Examples:\n"
+        "  lightswitch strategies cornell-spheres --output pyramid.png\n"
+        "  lightswitch strategies room.xml --max-depth 3 --spp 256 --unweighted --output alone.png --directory .");
 }
 
 }  // namespace lightswitch::program

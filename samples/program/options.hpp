@@ -13,5 +13,9 @@ void add_scene_options(CLI::App& app, SceneOptions& options);
 void add_render(CLI::App& app, RenderOptions& options);
 void add_compare(CLI::App& app, CompareOptions& options);
 void add_verify(CLI::App& app, VerifyCommand& command);
+void add_strategies(CLI::App& app, StrategiesCommand& command);
+
+/// The options that only some methods have, as a group of their own.
+void add_method_options(CLI::App& app, MethodOptions& options);
 
 }  // namespace lightswitch::program

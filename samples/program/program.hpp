@@ -33,9 +33,21 @@ struct SceneOptions {
     BuildOptions build;
 };
 
+/// Settings that only some methods have. What is not given stays as the method has it.
+struct MethodOptions {
+    std::optional<float> radius;         ///< pixels, of photon and vcm
+    std::optional<float> alpha;          ///< of the same
+    std::optional<double> photon_paths;  ///< light paths per pixel and iteration, of photon
+    std::optional<bool> final_gather;    ///< of photon
+    std::optional<int> chains, bootstrap;
+    std::optional<float> large_steps;  ///< probability, of mlt as what is around it
+    std::optional<bool> refine;
+};
+
 struct RenderOptions {
     SceneOptions scene;
     std::string method = "path-nee";
+    MethodOptions of_method;
     std::vector<std::filesystem::path> outputs;
     std::string stats;  ///< a file, "-" for standard output, or empty
     Budget budget;      ///< without any limit: what the scene says, or 64 samples
@@ -60,6 +72,7 @@ struct VerifyCommand {
     SceneOptions scene;  ///< may be empty where `against` is given
     std::vector<std::string> methods;
     std::string reference;
+    MethodOptions of_methods;  ///< each for those that have it
     std::vector<std::string> images, against;  ///< patterns of file names
     std::optional<int> max_depth;
     VerifyOptions options{.seconds = 60};
@@ -67,10 +80,22 @@ struct VerifyCommand {
     bool quiet = false;
 };
 
+inline constexpr int most_strategy_depth = 16;  ///< then there are 151 of them
+
+struct StrategiesCommand {
+    SceneOptions scene;
+    std::vector<std::filesystem::path> outputs;
+    std::string directory;  ///< for an image of each; may be empty
+    int max_depth = 5, samples = 64, threads = 0;
+    std::uint64_t seed = 0;
+    bool unweighted = false, quiet = false;
+};
+
 // Each runs one sub-command and returns the program's exit status. They throw `Error` for what the user can mend.
 int render(const RenderOptions& options);
 int compare(const CompareOptions& options);
 int verify(const VerifyCommand& command);
+int strategies(const StrategiesCommand& command);
 int info(const SceneOptions& options);
 int list_methods();
 

@@ -2,10 +2,11 @@
 #include "load.hpp"
 #include "messages.hpp"
 #include "method_notes.hpp"
+#include "method_options.hpp"
 #include "progress.hpp"
 #include "run.hpp"
 #include "statistics.hpp"
-#include "text.hpp"
+#include "warnings.hpp"
 
 #include <lightswitch/film/image_io.hpp>
 
@@ -27,55 +28,15 @@ void check_outputs(const RenderOptions& options) {
         throw Error("--stats and --output name the same file, " + options.stats);
 }
 
-void warn_about_clipping(const LoadedScene& loaded) {
-    const auto box = bounds(loaded.scene);
-    if (!box) return;
-    const CameraDescription& camera = loaded.summary.camera;
-    double nearest = std::numeric_limits<double>::infinity(), farthest = -nearest;
-    for (int corner = 0; corner < 8; ++corner) {
-        const DVec3 point(corner & 1 ? box->upper.x : box->lower.x, corner & 2 ? box->upper.y : box->lower.y,
-                          corner & 4 ? box->upper.z : box->lower.z);
-        const double depth = glm::dot(point - DVec3(camera.to_world[3]), DVec3(camera.to_world[2]));
-        nearest = std::min(nearest, depth);
-        farthest = std::max(farthest, depth);
-    }
-    if (farthest <= 0) print_warning("all surfaces lie behind the camera");
-    else if (nearest > camera.far_clip || farthest < camera.near_clip)
-        print_warning(
-            fmt::format("the camera's near_clip {:.6g} and far_clip {:.6g} cut everything away: along its axis "
-                        "the surfaces lie from {:.6g} to {:.6g}",
-                        camera.near_clip, camera.far_clip, nearest, farthest));
-}
-
-void warn_about_scene(const LoadedScene& loaded, const AnyMethod& method, const RenderOptions& options) {
-    const SceneSummary& summary = loaded.summary;
-    const std::string_view name = method_name(method);
-    const std::size_t dirac = summary.point_lights + summary.directional_lights;
-    if (dirac > 0 && !notes_on(name).sees_dirac_lights)
-        print_warning(
-            fmt::format("the method {} cannot see the scene's {} point and directional lights: what they light "
-                        "stays dark; use {}",
-                        name, dirac, PathTracerNee::name));
-    const bool dark = std::visit([](const auto& scene) { return scene.statistics().lights == 0; }, loaded.scene);
-    if (dark && name != Silhouette::name) print_warning("the scene has no light: the image will be black");
-    const bool has_depth = std::visit(
-        [](const auto& m) {
-            return requires { m.max_depth; };
-        },
-        method);
+void warn_about_depths(const AnyMethod& method, const RenderOptions& options) {
+    const auto [has_depth, has_roulette] = std::visit(
+        [](const auto& m) { return std::pair(requires { m.max_depth; }, requires { m.rr_depth; }); }, method);
     if (!has_depth && (options.max_depth || options.rr_depth))
-        print_warning(fmt::format("the method {} has no path length: --max-depth and --rr-depth change nothing", name));
-    warn_about_clipping(loaded);
-}
-
-void warn_about_values(const RenderCounts& counts, const Image& image) {
-    if (counts.non_finite == 0 || counts.first_non_finite.empty()) return;
-    const NonFinite& first = counts.first_non_finite.front();
-    const auto width = static_cast<std::uint32_t>(image.width());
-    print_warning(fmt::format(
-        "{} contributions were not finite and count as black; the first in pixel ({}, {}), "
-        "iteration {}; to meet it again: --seed {} --spp {}",
-        counts.non_finite, first.pixel % width, first.pixel / width, first.iteration, first.seed, first.iteration + 1));
+        print_warning(fmt::format("the method {} has no path length: --max-depth and --rr-depth change nothing",
+                                  method_name(method)));
+    else if (!has_roulette && options.rr_depth)
+        print_warning(fmt::format("the method {} has no Russian roulette: --rr-depth changes nothing",
+                                  method_name(method)));
 }
 
 Budget budget(const RenderOptions& options, const SceneSummary& summary) {
@@ -103,7 +64,10 @@ int render(const RenderOptions& options) {
     AnyMethod method = find_method(options.method, "--method");
     check_outputs(options);
     const LoadedScene loaded = load_scene(options.scene);
-    warn_about_scene(loaded, method, options);
+    const Size size = loaded.summary.size;
+    set_options({&method, 1}, options.of_method, std::size_t(size.width) * std::size_t(size.height));
+    warn_about_scene(loaded, method_name(method));
+    warn_about_depths(method, options);
     set_path_length(method, path_length(loaded.summary, options.max_depth, options.rr_depth));
 
     const Cancellation cancellation;

@@ -1,5 +1,7 @@
 #include "statistics.hpp"
 
+#include "method_options.hpp"
+
 #include <lightswitch/version.hpp>
 
 #include <nlohmann/json.hpp>
@@ -49,24 +51,21 @@ std::string statistics_json(const AnyScene& scene, const AnyMethod& method, cons
               {"seed", options.seed},
               {"sampler", name(options.sampling)},
               {"max_depth", nullptr},
-              {"rr_depth", nullptr},
-              {"mean", {mean.x, mean.y, mean.z}},
-              {"estimated_error", rendered.estimated_error},
-              {"non_finite", counts.non_finite},
-              {"first_non_finite", non_finite(counts, rendered.image.width())},
-              {"splats", counts.splats},
-              {"paths", counts.paths}};
+              {"rr_depth", nullptr}};
     std::visit(
         [&](const auto& m) {
-            if constexpr (requires {
-                              m.max_depth;
-                              m.rr_depth;
-                          }) {
-                json["max_depth"] = m.max_depth;
-                json["rr_depth"] = m.rr_depth;
-            }
+            if constexpr (requires { m.max_depth; }) json["max_depth"] = m.max_depth;
+            if constexpr (requires { m.rr_depth; }) json["rr_depth"] = m.rr_depth;
         },
         method);
+    for (const auto& [key, value] : settings_of(method))
+        std::visit([&, &key = key](auto v) { json[std::string(key)] = v; }, value);
+    json["mean"] = {mean.x, mean.y, mean.z};
+    json["estimated_error"] = rendered.estimated_error;
+    json["non_finite"] = counts.non_finite;
+    json["first_non_finite"] = non_finite(counts, rendered.image.width());
+    json["splats"] = counts.splats;
+    json["paths"] = counts.paths;
     std::visit(
         [&](const auto& built) {
             const SceneStatistics& of_scene = built.statistics();

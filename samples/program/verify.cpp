@@ -2,6 +2,7 @@
 #include "load.hpp"
 #include "messages.hpp"
 #include "method_notes.hpp"
+#include "method_options.hpp"
 #include "progress.hpp"
 #include "report.hpp"
 #include "run.hpp"
@@ -96,7 +97,8 @@ std::vector<std::string> chosen_methods(const VerifyCommand& command, const Scen
     if (!command.methods.empty()) return command.methods;
     std::vector<std::string> names;
     for_each_method([&](const auto& m) {
-        const bool blind = has_dirac_lights(summary) && !notes_on(m.name).sees_dirac_lights;
+        bool blind = has_dirac_lights(summary) && !notes_on(m.name).sees_dirac_lights;
+        blind |= summary.specular && !notes_on(m.name).sees_in_mirrors;
         if (m.kind != Kind::heuristic && m.name != reference && !blind) names.emplace_back(m.name);
     });
     if (names.empty())  // then at least with itself, which tests its noise
@@ -132,6 +134,7 @@ Contest make_contest(const VerifyCommand& command, const std::stop_token& stop) 
         if (!from_files) throw Error("--against compares files: name the others with --images");
         if (!command.scene.scene.empty() || !command.reference.empty())
             throw Error("--against is the reference: leave out the scene and --reference");
+        set_options({}, command.of_methods, 0);
         std::vector<Image> others = load_replicas(command.against, "--against");
         for (const Image& image : images)
             for (const Image& other : others) {
@@ -154,24 +157,41 @@ Contest make_contest(const VerifyCommand& command, const std::stop_token& stop) 
     std::string reference = command.reference;
     if (reference.empty()) reference = has_dirac_lights(summary) ? PathTracerNee::name : PathTracer::name;
     const PathLength length = path_length(summary, command.max_depth, {});
+    std::vector<AnyMethod> methods;
     const auto add = [&](const std::string& wanted, std::string_view option) {
         const bool file = wanted.find('.') != std::string::npos;
-        AnyMethod method = find_method(wanted, option, file ? "; files are named with --images and --against" : "");
-        set_path_length(method, length);
-        if (has_dirac_lights(summary) && !notes_on(wanted).sees_dirac_lights)
-            print_warning(fmt::format(
-                "the method {} cannot see the scene's point and directional lights, and will not agree", wanted));
-        const Settings settings{.threads = command.options.threads, .stop = stop};
-        return std::visit([&](const auto& m) { return make_estimator(contest.loaded->scene, m, settings); }, method);
+        methods.push_back(
+            find_method(wanted, option, file ? "; files are named with --images and --against" : ""));
+        set_path_length(methods.back(), length);
     };
-    contest.reference = add(reference, "--reference");
+    add(reference, "--reference");
+    if (!from_files)
+        for (const std::string& wanted : chosen_methods(command, summary, reference)) add(wanted, "--methods");
+    set_options(methods, command.of_methods, std::size_t(summary.size.width) * std::size_t(summary.size.height));
+
+    const Settings settings{.threads = command.options.threads, .stop = stop};
+    for (const AnyMethod& method : methods) {
+        const std::string_view name = method_name(method);
+        const MethodNotes& notes = notes_on(name);
+        if (has_dirac_lights(summary) && !notes.sees_dirac_lights)
+            print_warning(fmt::format(
+                "the method {} cannot see the scene's point and directional lights, and will not agree", name));
+        if (summary.specular && !notes.sees_in_mirrors)
+            print_warning(
+                fmt::format("the method {} cannot see what is in mirrors and behind glass, and will not agree where "
+                            "the camera sees any",
+                            name));
+        contest.methods.push_back(
+            std::visit([&](const auto& m) { return make_estimator(contest.loaded->scene, m, settings); }, method));
+    }
+    // The reference came first; or second, after the files.
+    const auto first = contest.methods.begin() + (from_files ? 1 : 0);
+    contest.reference = *first;
+    contest.methods.erase(first);
     if (from_files) {  // the lamps are known, and perhaps how many samples their light is averaged over
         const double samples = samples_of(images[0]);
         if (samples >= 1) contest.methods[0].brightest = contest.reference->brightest / static_cast<float>(samples);
     }
-    if (!from_files)
-        for (const std::string& wanted : chosen_methods(command, summary, reference))
-            contest.methods.push_back(add(wanted, "--methods"));
     return contest;
 }
 

@@ -39,8 +39,8 @@ std::vector<std::string> render(std::vector<std::string> more) {
 TEST_CASE("a command that is missing, unknown or misspelt") {
     const Workspace workspace;
     check_refused(workspace, {
-                                 {{}, "name a command: render, compare, verify, methods, info"},
-                                 {{"rendr"}, "did you mean \"render\"?; known are render, compare, verify, methods, info"},
+                                 {{}, "name a command: render, compare, verify, strategies, methods, info"},
+                                 {{"rendr"}, "did you mean \"render\"?; known are render, compare, verify, strategies, methods, info"},
                                  {{"--bogus"}, "there is no option \"--bogus\""},
                                  {{"methods", "path"}, "there is no use for \"path\""},
                                  {{"info"}, "name a scene"},

@@ -231,7 +231,7 @@ TEST_CASE("methods, info, version and help print") {
          {"full: Scene<", "256 x 256 pixels", "2 spheres", "1 conductor", "1 dielectric", "1 luminous mesh", "Embree"})
         CHECK(info.prints(text));
     CHECK(run(workspace, {"--version"}).out.starts_with("lightswitch "));
-    for (const char* command : {"render", "compare", "info"}) {
+    for (const char* command : {"render", "compare", "verify", "strategies", "info"}) {
         const Ended help = run(workspace, {command, "--help"});
         CHECK(help.status == 0);
         CHECK(help.prints("Usage: lightswitch " + std::string(command)));

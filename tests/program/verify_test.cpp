@@ -28,8 +28,8 @@ void write_noise(const Workspace& workspace, const std::string& name, int count,
 // False alarm: 1e-3.
 TEST_CASE("verify: methods on a scene") {
     const Workspace workspace;
-    const Ended ended = run(workspace, {"verify", "furnace", "--size", "16x16", "--seconds", "20", "--tolerance",
-                                        "0.02", "--json", "v.json", "--report", "v.html"});
+    const Ended ended = run(workspace, {"verify", "furnace", "--methods", "path-nee", "--size", "16x16", "--seconds",
+                                        "20", "--tolerance", "0.02", "--json", "v.json", "--report", "v.html"});
     CHECK(ended.status == 0);
     CHECK(ended.err == "");
     CHECK(ended.prints("path-nee against path: agrees. A bias of more than"));
@@ -46,6 +46,36 @@ TEST_CASE("verify: methods on a scene") {
     CHECK(verdict["parts"][0]["bias_interval"][0][0] < 0.02);
     CHECK(read_text(workspace / "v.html").find("path-nee") != std::string::npos);
     CHECK(workspace.files() == std::set<std::string>{"v.html", "v.json"});
+}
+
+TEST_CASE("verify: by default all methods that can have the reference's image") {
+    const Workspace workspace;
+    const auto verified = [&](const char* scene) {
+        const Ended ended =
+            run(workspace, {"verify", scene, "--size", "4x4", "--seconds", "0.01", "--lengths", "0", "--bootstrap",
+                                        "1000", "--json", "-"});
+        CHECK(ended.err.find("warning") == std::string::npos);
+        std::set<std::string> names;
+        const auto json = nlohmann::json::parse(ended.out);
+        for (const auto& verdict : json["verdicts"]) names.insert(verdict["method"].get<std::string>());
+        return names;
+    };
+    CHECK(verified("cornell-box") == std::set<std::string>{"path-nee", "light", "bdpt", "photon", "vcm", "mlt"});
+    CHECK(verified("cornell-spheres") == std::set<std::string>{"path-nee", "bdpt", "photon", "vcm", "mlt"});
+    CHECK(run(workspace, {"verify", "cornell-spheres", "--methods", "light", "--size", "4x4", "--seconds", "0.01"})
+              .says("warning: the method light cannot see what is in mirrors and behind glass"));
+}
+
+// False alarm: 1e-3.
+TEST_CASE("verify: the options of single methods hold for those that have them") {
+    const Workspace workspace;
+    // Light is spread over the whole box, so the picture has no shadows.
+    const Ended blurred = run(workspace, {"verify", "cornell-box", "--methods", "photon", "--reference", "path-nee",
+                                          "--radius", "1000", "--size", "16x16", "--seconds", "20", "--lengths", "0"});
+    CHECK(blurred.status == 1);
+    const Ended sharp = run(workspace, {"verify", "furnace", "--methods", "vcm,path-nee", "--radius", "0", "--size",
+                                        "8x8", "--seconds", "20", "--lengths", "0", "--tolerance", "0.1"});
+    CHECK(sharp.status == 0);
 }
 
 TEST_CASE("verify: too little time is no agreement") {
@@ -103,6 +133,11 @@ TEST_CASE("verify: what it cannot do is an error that says what to do, and nothi
         {{"verify", "furnace", "--methods", "pth"}, "--methods: there is no method \"pth\"; did you mean \"path\"?"},
         {{"verify", "furnace", "--reference", "silhouette"}, "the reference must be unbiased"},
         {{"verify", "furnace", "--reference", "bdp"}, "--reference: there is no method"},
+        {{"verify", "furnace", "--methods", "bdpt,path-nee", "--radius", "1"},
+         "--radius: there is no such setting in path, bdpt, path-nee; it belongs to photon, vcm"},
+        {{"verify", "furnace", "--methods", "vcm,photon", "--radius", "0"}, "photon would gather nothing"},
+        {{"verify", "furnace", "--chains", "0"}, "--chains: \"0\""},
+        {{"verify", "--images", "a-*.pfm", "--against", "a-*.pfm", "--radius", "1"}, "files have no settings"},
         {{"verify", "furnace", "--confidence", "1"}, "--confidence: it must be below 1"},
         {{"verify", "furnace", "--seconds", "0"}, "--seconds"},
         {{"verify", "furnace", "--images", "none-*.pfm"}, "--images: no file matches \"none-*.pfm\""},

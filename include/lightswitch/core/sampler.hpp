@@ -104,7 +104,7 @@ private:
     };
     std::uint64_t seed_, iteration_;
     std::uint32_t pairs_;
-    std::array<Point, sobol_pairs> points_;
+    std::array<Point, sobol_pairs> points_{};
 };
 
 /// The numbers of one pixel sample or one light path. Cheap to make; refers to its `IterationPoints`, which must outlive it.

@@ -54,14 +54,12 @@ inline Kind method_kind(const AnyMethod& method) {
     return std::visit([](const auto& m) { return m.kind; }, method);
 }
 
-/// Sets the path lengths of a method that has them; others are left alone.
+/// Sets what a method has of the two; the rest is left alone.
 inline void set_path_length(AnyMethod& method, const PathLength& length) {
     std::visit(
         [&](auto& m) {
-            if constexpr (requires { m.max_depth; m.rr_depth; }) {
-                m.max_depth = length.max_depth;
-                m.rr_depth = length.rr_depth;
-            }
+            if constexpr (requires { m.max_depth; }) m.max_depth = length.max_depth;
+            if constexpr (requires { m.rr_depth; }) m.rr_depth = length.rr_depth;
         },
         method);
 }

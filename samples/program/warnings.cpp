@@ -1,0 +1,55 @@
+#include "warnings.hpp"
+
+#include "messages.hpp"
+#include "method_notes.hpp"
+
+#include <fmt/format.h>
+
+namespace lightswitch::program {
+namespace {
+
+void warn_about_clipping(const LoadedScene& loaded) {
+    const auto box = bounds(loaded.scene);
+    if (!box) return;
+    const CameraDescription& camera = loaded.summary.camera;
+    double nearest = std::numeric_limits<double>::infinity(), farthest = -nearest;
+    for (int corner = 0; corner < 8; ++corner) {
+        const DVec3 point(corner & 1 ? box->upper.x : box->lower.x, corner & 2 ? box->upper.y : box->lower.y,
+                          corner & 4 ? box->upper.z : box->lower.z);
+        const double depth = glm::dot(point - DVec3(camera.to_world[3]), DVec3(camera.to_world[2]));
+        nearest = std::min(nearest, depth);
+        farthest = std::max(farthest, depth);
+    }
+    if (farthest <= 0) print_warning("all surfaces lie behind the camera");
+    else if (nearest > camera.far_clip || farthest < camera.near_clip)
+        print_warning(
+            fmt::format("the camera's near_clip {:.6g} and far_clip {:.6g} cut everything away: along its axis "
+                        "the surfaces lie from {:.6g} to {:.6g}",
+                        camera.near_clip, camera.far_clip, nearest, farthest));
+}
+
+}  // namespace
+
+void warn_about_scene(const LoadedScene& loaded, std::string_view method) {
+    const std::size_t dirac = loaded.summary.point_lights + loaded.summary.directional_lights;
+    if (dirac > 0 && !notes_on(method).sees_dirac_lights)
+        print_warning(
+            fmt::format("the method {} cannot see the scene's {} point and directional lights: what they light "
+                        "stays dark; use {}",
+                        method, dirac, PathTracerNee::name));
+    const bool dark = std::visit([](const auto& scene) { return scene.statistics().lights == 0; }, loaded.scene);
+    if (dark && method != Silhouette::name) print_warning("the scene has no light: the image will be black");
+    warn_about_clipping(loaded);
+}
+
+void warn_about_values(const RenderCounts& counts, const Image& image) {
+    if (counts.non_finite == 0 || counts.first_non_finite.empty()) return;
+    const NonFinite& first = counts.first_non_finite.front();
+    const auto width = static_cast<std::uint32_t>(image.width());
+    print_warning(fmt::format(
+        "{} contributions were not finite and count as black; the first in pixel ({}, {}), "
+        "iteration {}; to meet it again: --seed {} --spp {}",
+        counts.non_finite, first.pixel % width, first.pixel / width, first.iteration, first.seed, first.iteration + 1));
+}
+
+}  // namespace lightswitch::program

@@ -1,0 +1,17 @@
+#pragma once
+
+// What the program warns of before and after a render.
+
+#include "load.hpp"
+
+#include <string_view>
+
+namespace lightswitch::program {
+
+/// What the method will not see of the scene, and what nobody will.
+void warn_about_scene(const LoadedScene& loaded, std::string_view method);
+
+/// Values that were not finite, and how to meet the first of them again.
+void warn_about_values(const RenderCounts& counts, const Image& image);
+
+}  // namespace lightswitch::program

@@ -1,0 +1,311 @@
+// Metropolis light transport sees the image of path tracing, from the first iteration on, and says what its chains did.
+// More scenes and path lengths, with more samples, are in mlt_long_test.cpp.
+
+#include "mlt.hpp"
+
+#include "support/statistics.hpp"
+
+using namespace lightswitch;
+using namespace lightswitch::test;
+
+namespace {
+
+/// What the state says, by name.
+double of_method(const RenderStatistics& statistics, std::string_view name) {
+    for (const auto& [key, value] : statistics.of_method)
+        if (key == name) return value;
+    FAIL("no statistic of the name ", name);
+    return 0;
+}
+
+/// A mirror that fills the view under an even sky: with two segments only the strategy s = 0 finds light, and whatever
+/// it finds is the same.
+LibraryDescription mirror_under_sky() {
+    LibraryDescription scene;
+    scene.add(quad({-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9}), scene.add(Conductor{.reflectance = Rgb(0.5f)}));
+    scene.add(EnvironmentSource{Rgb(2)});
+    scenes::look(scene, {0, 3, 0.5}, {0, 0, 0}, 40);
+    return scenes::on_small_film(scene);
+}
+
+double square_of(double x) { return x * x; }
+
+}  // namespace
+
+// False alarm: 1e-3 in each test case that compares means.
+
+TEST_CASE("mlt: agrees with path tracing") {
+    const auto cases = mlt_cases();
+    for (const TransportCase& c : cases) check_mlt_against_path_nee(c, {-1}, 8, 1e-3, static_cast<int>(cases.size()));
+}
+
+TEST_CASE("mlt: each limit of the path length") {
+    const TransportCase box{"cornell-box", scenes::on_small_film(stock::describe_cornell_box())};
+    check_mlt_against_path_nee(box, {1, 2, 3, 4}, 8, 1e-3, 2);
+    const TransportCase all{"stage under all", scenes::stage_under_all()};
+    check_mlt_against_path_nee(all, {1, 2, 3, 4}, 8, 1e-3, 2);
+}
+
+TEST_CASE("mlt: furnaces are geometric series") {
+    for (const float albedo : {0.5f, 0.8f})
+        for (const int depth : {2, 3, -1}) {
+            const double a = double(albedo), expected = depth < 0 ? 1 / (1 - a) : (1 - std::pow(a, depth)) / (1 - a);
+            const TileEstimates truth = known_tiles(2, 2, 8, expected);
+            TransportCase box{"furnace " + std::to_string(albedo),
+                              scenes::on_small_film(stock::describe_furnace(albedo))};
+            check_mlt(box, build_scene<DiffuseBsdfs, Lights<TriangleLight>>(box.description), truth, depth, 8, 1e-3, 6);
+        }
+}
+
+TEST_CASE("mlt: nothing at depth 0, emission alone at depth 1, black without light") {
+    const FullScene scene = build_scene<AllBsdfs, AllLights>(scenes::lamp_in_sphere());
+    CHECK(render(scene, Mlt{.max_depth = 0}, {.samples = 1}).mean() == DVec3(0));
+    CHECK(identical(render(scene, Mlt{.max_depth = 1}, {.samples = 2}),
+                    render(scene, PathTracerNee{.max_depth = 1}, {.samples = 2})));
+    const FullScene dark = build_scene<AllBsdfs, AllLights>(scenes::hollow_sphere());
+    CHECK(render(dark, Mlt{.bootstrap = 64}, {.samples = 2}).mean() == DVec3(0));
+}
+
+// A film of several tiles of the guide, some of them not full: the guide must cancel. Chains do not divide the pixels.
+TEST_CASE("mlt: agrees with path tracing where the guide is uneven") {
+    LibraryDescription description = stock::describe_cornell_box();
+    description.film.width = 41;
+    description.film.height = 25;
+    const TransportCase c{"41 x 25", description, true, 12};
+    check_mlt_against_path_nee(c, {-1}, 8, 1e-3, 1);
+}
+
+// A filter that takes in a good part of what lies beyond the film.
+TEST_CASE("mlt: agrees with path tracing at the border of a film with a wide filter") {
+    check_mlt_against_path_nee({"wide gaussian", scenes::filtered(Filter::gaussian(1.5f))}, {-1}, 8, 1e-3, 1);
+}
+
+// Sixteen seeds: their mean is that of path tracing (t test, 1e-3 in each scene), and none is further from it than what
+// the seeds themselves spread: beyond 5 of their deviations is one value in 2e6, for three channels of 16 seeds 2e-5.
+TEST_CASE("mlt: every seed gives the same image") {
+    const auto check = [](const LibraryDescription& description, int samples, double spread) {
+        const FullScene scene = build_scene<AllBsdfs, AllLights>(description);
+        const TileEstimates truth = replicate_finite(scene, PathTracerNee{}, 8, 16, 8 * samples, 1001);
+        Mean seeds[3];
+        std::vector<DVec3> means;
+        for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+            means.push_back(render(scene, mlt_for_tests(-1, samples), {.samples = 4 * samples}, {.seed = seed}).mean());
+            for (int c = 0; c < 3; ++c) seeds[c].add(means.back()[c]);
+        }
+        for (int c = 0; c < 3; ++c) {
+            const Estimate ours{seeds[c].value(), square_of(seeds[c].error()), 15};
+            CHECK_MESSAGE(welch_p(ours, truth.whole[c]) > sidak(1e-3, 3), description.name, ", channel ", c, ": ",
+                          BiasInterval(ours, truth.whole[c]));
+            // Else the bound on single seeds would say nothing.
+            CHECK(std::sqrt(seeds[c].variance()) < spread * seeds[c].value());
+            for (const DVec3& mean : means)
+                CHECK(std::abs(mean[c] - truth.whole[c].mean) < 5 * std::sqrt(seeds[c].variance()));
+        }
+    };
+    check(scenes::on_small_film(stock::describe_cornell_box()), 16, 0.05);
+    check(scenes::on_small_film(stock::describe_cornell_spheres()), 32, 0.15);
+}
+
+// The mean of many first iterations, of chains that hardly forget in 16 mutations where they began. False alarm: 1e-3
+// for the comparison, which sees a bias of the whole beyond 1.5 %, and for each of the two bounds on the bias. With
+// `refine` it may be as large as documented: a path's target has a relative variance of 1.7 here, over a bootstrap of
+// 512 that is 0.3 %.
+TEST_CASE("mlt: no bias from where chains start") {
+    const FullScene scene = build_scene<AllBsdfs, AllLights>(scenes::start_up());
+    const TileEstimates truth = replicate_finite(scene, PathTracerNee{}, 2, 16, 1024, 1001);
+    const auto check = [&](bool refine, int samples, int seeds) {
+        const TileEstimates ours = replicate_finite(scene, start_up_mlt(refine), 2, seeds, samples, 1);
+        const BiasInterval whole(ours.whole[1], truth.whole[1], 0.999);
+        CHECK_MESSAGE(whole.within(0.03), whole);
+        CHECK(whole.high - whole.low < 0.03);
+        if (refine) return;
+        const Comparison comparison = compare(ours, truth, 1e-3);
+        CHECK_MESSAGE(comparison.agree(), comparison);
+    };
+    check(false, 1, 1024);
+    check(true, 4, 384);
+}
+
+// Every path that is not black has the same target here, so that the walk is known: with probability 1/3 a strategy
+// finds light. A large step is accepted in that many of the cases. A small one is unless it leaves the interval of
+// length 1/3: through either end, which happens with probability (mean distance) / (1/3). Each bound is off by 5
+// standard errors of that many independent events; small steps are not independent, but those near the ends of the
+// interval are few.
+TEST_CASE("mlt: statistics of a walk that is known") {
+    const FullScene scene = build_scene<AllBsdfs, AllLights>(mirror_under_sky());
+    constexpr int iterations = 400;
+    constexpr double n = 256.0 * iterations;
+    const double distance = (1.0 / 64 - 1.0 / 1024) / std::log(16.0);
+    for (const float large : {0.1f, 0.5f, 1.0f}) {
+        CAPTURE(large);
+        Session<FullScene, Mlt> session(scene, Mlt{.max_depth = 2, .bootstrap = 4096, .large_steps = large});
+        session.run({.samples = iterations});
+        const RenderStatistics& statistics = session.statistics();
+        CHECK(statistics.counts.non_finite == 0);
+        CHECK(of_method(statistics, "chains") == 16);
+        CHECK(of_method(statistics, "mutations") == n);
+        const double p = double(large), rate = of_method(statistics, "large_step_rate");
+        if (large == 1) CHECK(rate == 1);
+        else CHECK(std::abs(rate - p) < 5 * std::sqrt(p * (1 - p) / n));
+        const double accepted = p / 3 + (1 - p) * (1 - 3 * distance);
+        CHECK_MESSAGE(std::abs(of_method(statistics, "acceptance_rate") - accepted) <
+                          5 * std::sqrt(accepted * (1 - accepted) / n) + 0.002 * (1 - p),
+                      of_method(statistics, "acceptance_rate"), " against ", accepted);
+        // Half of the sky's radiance of 2 on every pixel.
+        const double image = session.film().image().mean().y;
+        CHECK(image == doctest::Approx(1).epsilon(0.05));
+        CHECK(of_method(statistics, "normalization") > 0);
+    }
+}
+
+TEST_CASE("mlt: statistics of usual chains") {
+    const FullScene scene = build_scene<AllBsdfs, AllLights>(scenes::on_small_film(stock::describe_cornell_spheres()));
+    const auto run = [&](const Mlt& method) {
+        Session<FullScene, Mlt> session(scene, method);
+        session.run({.samples = 8});
+        return session.statistics();
+    };
+    const RenderStatistics usual = run(mlt_for_tests(-1));
+    CHECK(of_method(usual, "chains") == 16);
+    CHECK(of_method(usual, "mutations") == 8 * 256);
+    CHECK(of_method(usual, "acceptance_rate") > 0.1);
+    CHECK(of_method(usual, "acceptance_rate") < 1);
+    CHECK(usual.counts.non_finite == 0);
+    // As many as asked for when pixels suffice; iterations of whole mutations of each chain.
+    const RenderStatistics five = run({.chains = 5, .bootstrap = 256});
+    CHECK(of_method(five, "chains") == 5);
+    CHECK(of_method(five, "mutations") == 8 * 5 * 52);
+    CHECK(of_method(run({.chains = 0, .bootstrap = 0}), "chains") <= 1);
+}
+
+namespace {
+
+LibraryDescription odd_film() {
+    LibraryDescription scene = random_scene(2);
+    scene.film.width = 53;
+    scene.film.height = 37;
+    return scene;
+}
+
+const Mlt small_mlt{.chains = 40, .bootstrap = 3000};
+
+/// Breaks off the work of one call of `for_each`, in the middle, once.
+struct Interrupted {
+    int* calls_left;
+    std::stop_source* stop = nullptr;  ///< asked to end; without it, an exception
+
+    void for_each(std::size_t n, const auto& unit) const {
+        const bool now = (*calls_left)-- == 0;
+        for (std::size_t i = 0; i < n; ++i) {
+            if (now && i == n / 2) {
+                if (!stop) throw Error("broken off");
+                stop->request_stop();
+            }
+            unit(i);
+        }
+    }
+    int threads() const { return 1; }
+};
+
+}  // namespace
+
+TEST_CASE("mlt: the same for any threads, and when continued") {
+    const FullScene scene = build_scene<AllBsdfs, AllLights>(odd_film());
+    for (const bool refine : {false, true})
+        for (const Sampling sampling : {Sampling::sobol, Sampling::independent}) {
+            Mlt method = small_mlt;
+            method.refine = refine;
+            Session<FullScene, Mlt, SerialExecutor> serial(scene, method, {.seed = 5, .sampling = sampling}, {});
+            serial.run({.samples = 8});
+            const Image expected = serial.film().image();
+            for (const int threads : {1, 2, 8}) {
+                Session<FullScene, Mlt> parallel(scene, method, {.seed = 5, .threads = threads, .sampling = sampling});
+                for (const int samples : {3, 8}) parallel.run({.samples = samples});
+                CHECK(identical(parallel.film().image(), expected));
+                CHECK(identical(parallel.film().variance(), serial.film().variance()));
+                CHECK(parallel.statistics().of_method == serial.statistics().of_method);
+                CHECK(parallel.statistics().counts.rays == serial.statistics().counts.rays);
+            }
+            CHECK_FALSE(identical(expected, render(scene, method, {.samples = 8}, {.seed = 6, .sampling = sampling})));
+        }
+}
+
+TEST_CASE("mlt: goes on after an exception as if nothing had happened") {
+    const FullScene scene = build_scene<AllBsdfs, AllLights>(odd_film());
+    const Image expected = render(scene, small_mlt, {.samples = 6});
+    // From an observer, between iterations.
+    bool thrown = false;
+    Session<FullScene, Mlt> observed(scene, small_mlt, {.observer = [&](const Progress& progress) {
+                                         if (progress.iterations == 3 && !std::exchange(thrown, true))
+                                             throw Error("seen enough");
+                                     }});
+    CHECK_THROWS_AS(observed.run({.samples = 6}), Error);
+    CHECK(observed.film().iterations() == 3);
+    observed.run({.samples = 6});
+    CHECK(identical(observed.film().image(), expected));
+
+    // Within the passes of an iteration over pixels and over chains.
+    for (const int calls : {0, 1}) {
+        int calls_left = -1;
+        Session<FullScene, Mlt, Interrupted> session(scene, small_mlt, {}, Interrupted{&calls_left});
+        session.run({.samples = 2});
+        calls_left = calls;
+        CHECK_THROWS_AS(session.run({.samples = 6}), Error);
+        CHECK(session.film().iterations() == 2);
+        session.run({.samples = 6});
+        CHECK(identical(session.film().image(), expected));
+    }
+}
+
+TEST_CASE("mlt: an iteration that is stopped can be made again") {
+    const FullScene scene = build_scene<AllBsdfs, AllLights>(odd_film());
+    const Image expected = render(scene, small_mlt, {.samples = 3});
+    Film film(53, 37);
+    int calls_left = -1;
+    RenderCounts counts;
+    const auto with_frame = [&](std::uint64_t iteration, std::stop_source* stop, const auto& f) {
+        const Interrupted executor{&calls_left, stop};
+        Frame<FullScene, Interrupted> frame(scene, film, executor, scene.film().filter, Sampling::sobol, 0, iteration,
+                                            stop ? stop->get_token() : std::stop_token(), counts);
+        return f(frame);
+    };
+    auto state = with_frame(Frame<FullScene, Interrupted>::before_the_first, nullptr,
+                            [](auto& frame) { return small_mlt.start(frame); });
+    film.discard(SerialExecutor{});
+    for (std::uint64_t iteration = 0; iteration < 3; ++iteration) {
+        const auto iterate = [&](auto& frame) { small_mlt.iterate(frame, state); };
+        for (int calls = 0; calls < 2; ++calls) {
+            std::stop_source stop;
+            calls_left = calls;
+            with_frame(iteration, &stop, iterate);
+            CHECK(stop.stop_requested());
+            film.discard(SerialExecutor{});
+        }
+        with_frame(iteration, nullptr, iterate);
+        film.commit(SerialExecutor{});
+    }
+    CHECK(identical(film.image(), expected));
+}
+
+TEST_CASE("mlt: every scale by a power of two gives the same bits") {
+    const auto scaled = [](int k) {
+        LibraryDescription scene = odd_film();
+        const double factor = std::ldexp(1.0, k);
+        for (auto& shape : scene.shapes) {
+            if (auto* mesh = std::get_if<Mesh>(&shape.geometry)) {
+                for (DVec3& p : mesh->positions) p *= factor;
+            } else {
+                std::get<Sphere>(shape.geometry).center *= factor;
+                std::get<Sphere>(shape.geometry).radius *= factor;
+            }
+        }
+        auto& camera = scene.camera;
+        camera.near_clip = 0.01;
+        camera.to_world[3] = glm::dvec4(DVec3(camera.to_world[3]) * factor, 1);
+        for (double* length : {&camera.aperture_radius, &camera.focus_distance, &camera.near_clip}) *length *= factor;
+        return render(build_scene<AllBsdfs, AllLights>(scene), small_mlt, {.samples = 3});
+    };
+    const Image image = scaled(0);
+    CHECK(image.mean().y > 0);
+    for (const int k : {-40, 40}) CHECK(identical(image, scaled(k)));
+}
