@@ -11,8 +11,9 @@ namespace lightswitch::test {
 /// `refine` biases first iterations by about v / n, with v the relative variance of a path's target and n `bootstrap`.
 /// v is 1 to 50 for most scenes here (168 for cornell-spheres, 230 for camera in glass, 470 for veach-mis, 650 for
 /// light in mirror: as seen in the spread of `normalization` over seeds without `refine`), and a case's `samples` grows
-/// with it, so that v / n is at most 0.6 % (2 % for the last two). The noise of the brightness alone, which is the least
-/// that a comparison of 8 replicas must allow for, is about sqrt(v / n / 16): 2 % and more where v / n is that large.
+/// with it, so that v / n is at most 0.6 % (2 % for the last two). The noise of the brightness alone, which is the
+/// least that a comparison of 8 replicas must allow for, is about sqrt(v / n / 16): 2 % and more where v / n is that
+/// large.
 inline Mlt mlt_for_tests(int max_depth, int samples = 16) {
     return {.max_depth = max_depth, .bootstrap = 512 * samples};
 }

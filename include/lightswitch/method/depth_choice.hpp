@@ -22,15 +22,17 @@ public:
         normalize();
     }
 
-    /// Half as before, half in proportion to `power[i]`, which lengths of i segments were found to carry; more are allowed, and count
-    /// to the tail.
+    /// Half as before, half in proportion to `power[i]`, which lengths of i segments were found to carry; those beyond the table
+    /// count to the tail.
     void learn(const std::vector<double>& power) {
         double sum = 0;
         for (const double p : power) sum += p;
         if (!(sum > 0)) return;
         for (std::size_t depth = 2; depth < power.size(); ++depth) {
-            double& w = depth - 2 < weights_.size() ? weights_[depth - 2] : tail_;
-            w += power[depth] / sum;
+            if (depth - 2 < weights_.size())
+                weights_[depth - 2] += power[depth] / sum;
+            else if (!bounded_by_table())
+                tail_ += power[depth] / sum;
         }
         normalize();
     }

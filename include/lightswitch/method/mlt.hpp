@@ -91,7 +91,7 @@ struct Mlt {
         state.chains.resize(std::clamp<std::size_t>(pixels / 16, 1, static_cast<std::size_t>(std::max(chains, 1))));
         // Evenly through the sum, from a random begin.
         const double step = state.sum / double(state.chains.size());
-        double next = step * RandomSequence(seeds[0].seed).next(), sum = 0;
+        double next = step * RandomSequence(~seeds[0].seed).next(), sum = 0;
         std::size_t filled = 0;
         for (const Seed& seed : seeds) {
             sum += seed.target;
