@@ -58,8 +58,8 @@ std::string statistics_json(const AnyScene& scene, const AnyMethod& method, cons
             if constexpr (requires { m.rr_depth; }) json["rr_depth"] = m.rr_depth;
         },
         method);
-    for (const auto& [key, value] : settings_of(method))
-        std::visit([&, &key = key](auto v) { json[std::string(key)] = v; }, value);
+    for (const auto& setting : settings_of(method))
+        std::visit([&](auto value) { json[std::string(setting.first)] = value; }, setting.second);
     json["mean"] = {mean.x, mean.y, mean.z};
     json["estimated_error"] = rendered.estimated_error;
     json["non_finite"] = counts.non_finite;
