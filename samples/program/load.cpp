@@ -38,16 +38,6 @@ struct MaterialName {
     }
 };
 
-struct IsSpecular {
-    bool operator()(const auto&) const { return false; }
-    bool operator()(const Conductor&) const { return true; }
-    bool operator()(const Dielectric&) const { return true; }
-    template <class Inner>
-    bool operator()(const TwoSided<Inner>& bsdf) const {
-        return (*this)(bsdf.inner);
-    }
-};
-
 SceneSummary summarize(const LibraryDescription& scene) {
     SceneSummary summary{.camera = scene.camera,
                          .size = {scene.film.width, scene.film.height},
@@ -67,7 +57,8 @@ SceneSummary summarize(const LibraryDescription& scene) {
     }
     for (const auto& material : scene.materials) {
         ++summary.materials[std::visit(MaterialName{}, material.bsdf)];
-        summary.specular |= std::visit(IsSpecular{}, material.bsdf);
+        summary.specular |=
+            std::visit([](const auto& bsdf) { return std::remove_cvref_t<decltype(bsdf)>::specular; }, material.bsdf);
     }
     return summary;
 }

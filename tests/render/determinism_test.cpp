@@ -112,27 +112,11 @@ TEST_CASE("vertex connection and merging is the same for any threads, and when c
 TEST_CASE("every scale by a power of two gives the same bits with paths from the lights") {
     for (LibraryDescription description : {random_scene(2), small_box(24, 24)}) {
         description.camera.near_clip = 0.01;
-        const auto scaled = [&](int k) {
-            LibraryDescription result = description;
-            const double factor = std::ldexp(1.0, k);
-            for (auto& shape : result.shapes) {
-                if (auto* mesh = std::get_if<Mesh>(&shape.geometry)) {
-                    for (DVec3& p : mesh->positions) p *= factor;
-                } else {
-                    std::get<Sphere>(shape.geometry).center *= factor;
-                    std::get<Sphere>(shape.geometry).radius *= factor;
-                }
-            }
-            auto& camera = result.camera;
-            camera.to_world[3] = glm::dvec4(DVec3(camera.to_world[3]) * factor, 1);
-            for (double* length : {&camera.aperture_radius, &camera.focus_distance, &camera.near_clip})
-                *length *= factor;
-            return build_scene<AllBsdfs, AllLights>(result);
-        };
-        const FullScene original = scaled(0);
+        const auto at_scale = [&](int k) { return build_scene<AllBsdfs, AllLights>(scaled(description, k)); };
+        const FullScene original = at_scale(0);
         for (const int k : {-40, -3, 40}) {
             CAPTURE(k);
-            const FullScene other = scaled(k);
+            const FullScene other = at_scale(k);
             const auto check = [&](const auto& method) {
                 const Image image = render(original, method, {.samples = 3});
                 CHECK(image.mean().y > 0);

@@ -28,6 +28,36 @@ inline bool identical(const Image& a, const Image& b) {
            });
 }
 
+/// The description with all positions mapped by `map`, and all lengths multiplied by `factor`.
+template <class Map>
+LibraryDescription mapped(LibraryDescription scene, const Map& map, double factor) {
+    for (auto& shape : scene.shapes) {
+        if (auto* mesh = std::get_if<Mesh>(&shape.geometry)) {
+            for (DVec3& p : mesh->positions) p = map(p);
+        } else {
+            auto& sphere = std::get<Sphere>(shape.geometry);
+            sphere.center = map(sphere.center);
+            sphere.radius *= factor;
+        }
+    }
+    for (auto& placed : scene.sources)
+        if (auto* point = std::get_if<PointSource>(&placed.source)) point->position = map(point->position);
+    auto& camera = scene.camera;
+    camera.to_world[3] = glm::dvec4(map(DVec3(camera.to_world[3])), 1);
+    camera.aperture_radius *= factor;
+    camera.focus_distance *= factor;
+    camera.near_clip *= factor;
+    camera.far_clip *= factor;
+    return scene;
+}
+
+/// The description at 2^k times the size.
+inline LibraryDescription scaled(const LibraryDescription& scene, int k) {
+    const double factor = std::ldexp(1.0, k);
+    return mapped(
+        scene, [&](const DVec3& p) { return p * factor; }, factor);
+}
+
 /// Four glossy plates under five spheres (after Veach 1997, figure 9.2), as tests/data/cbox/veach-mis.xml.
 inline LibraryDescription describe_veach_mis() {
     LibraryDescription scene;

@@ -33,7 +33,7 @@ struct Bdpt {
         if (max_depth == 0) return;
         const auto& scene = frame.scene();
         const PathLength length{max_depth, rr_depth / 2};
-        const double light_paths = double(frame.width()) * frame.height();
+        const double light_paths = double(frame.area());
         const auto count = [this](const Contribution& contribution, int s, int t) { return counted(contribution, s, t); };
         frame.pixels([&](const Ray& ray, auto& sampler, const PixelContext& pixel) {
             static thread_local std::vector<PathVertex> light_path;  // kept, so that it need not be allocated again

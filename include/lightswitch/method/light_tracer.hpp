@@ -23,7 +23,7 @@ struct LightTracer {
         if (max_depth == 0) return;
         const auto& scene = frame.scene();
         see_lights(frame);
-        const std::uint64_t light_paths = std::uint64_t(frame.width()) * std::uint64_t(frame.height());
+        const std::uint64_t light_paths = frame.area();
         frame.paths(light_paths, [&](std::uint64_t, auto& sampler, auto& splatter) {
             const auto alone = [](const Contribution& contribution, int, int) { return contribution.value; };
             splat_light_subpath(scene, sampler, splatter, {max_depth, rr_depth}, double(light_paths), {}, alone,

@@ -74,19 +74,17 @@ double pixel_footprint(const auto& scene) {
 inline MergeWeights merge_weights(double light_paths, double radius) {
     if (!(radius > 0)) return {};
     const double merges = light_paths * double(pi) * radius * radius;
-    return {.merge = heuristic(merges), .connect = heuristic(1 / merges)};
+    return {.merges = merges, .merge = heuristic(merges), .connect = heuristic(1 / merges)};
 }
 
-/// The photon `y`, taken as if it had arrived at the vertex `z` of a camera path. `merges` is light paths * pi *
-/// radius^2, by which the sum over all vertices within the radius is divided.
+/// The photon `y`, taken as if it had arrived at the vertex `z` of a camera path; to be summed over all within the radius.
 [[gnu::always_inline]] inline Contribution merge(const auto& scene, const WeighedPhoton& y, const PathVertex& z, const Arrival& at_z,
-                                                 double merges, const MergeWeights& weights) {
+                                                 const MergeWeights& weights) {
     const Turn at = photon_turn(scene, z.point, at_z, y);
     if (is_black(at.value)) return {};
     const double fewer = y.last * weights.connect + y.merges * heuristic(at.pdf.value);
     const double more = z.weights.last * weights.connect + z.weights.merges * heuristic(at.reverse_pdf.value);
-    return {z.throughput * at.value * y.power * static_cast<float>(1 / merges),
-            strategy_weight(fewer, more)};
+    return {z.throughput * at.value * y.power * static_cast<float>(1 / weights.merges), strategy_weight(fewer, more)};
 }
 
 }  // namespace lightswitch

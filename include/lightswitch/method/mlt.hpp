@@ -87,8 +87,7 @@ struct Mlt {
         for (const Seed& seed : seeds) state.sum += seed.target;
         state.drawn = seeds.size();
         if (frame.stopped() || !(state.sum > 0)) return state;
-        const std::size_t pixels = static_cast<std::size_t>(frame.width()) * static_cast<std::size_t>(frame.height());
-        state.chains.resize(std::clamp<std::size_t>(pixels / 16, 1, static_cast<std::size_t>(std::max(chains, 1))));
+        state.chains.resize(std::clamp<std::size_t>(frame.area() / 16, 1, static_cast<std::size_t>(std::max(chains, 1))));
         // Evenly through the sum, from a random begin.
         const double step = state.sum / double(state.chains.size());
         double next = step * RandomSequence(~seeds[0].seed).next(), sum = 0;
@@ -112,8 +111,7 @@ struct Mlt {
         see_lights(frame);
         if (state.chains.empty()) return;
         const std::size_t n = state.chains.size();
-        const std::uint64_t pixels = std::uint64_t(frame.width()) * std::uint64_t(frame.height());
-        const std::uint64_t mutations = (pixels + n - 1) / n;
+        const std::uint64_t mutations = (frame.area() + n - 1) / n;
         // Splats add up to the image's sum over pixels: each step's share of it.
         const double share = state.normalization() / (double(mutations) * double(n));
         state.next.resize(n);

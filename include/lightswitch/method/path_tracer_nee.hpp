@@ -3,6 +3,7 @@
 #include <lightswitch/bsdf/bsdf.hpp>
 #include <lightswitch/light/light.hpp>
 #include <lightswitch/method/roulette.hpp>
+#include <lightswitch/method/sampled_light.hpp>
 #include <lightswitch/render/method.hpp>
 
 namespace lightswitch {
@@ -20,28 +21,18 @@ struct PathTracerNee {
         Rgb sum(0), throughput(1);
         if (max_depth == 0) return sum;
         float eta = 1;
-        // What light sampling at the vertex before could have found is met with this density, from there; weight 1 when it
-        // could not: at the camera and after a specular bounce.
-        bool light_sampled = false;
-        SolidAnglePdf pdf;
-        Vec3 from(0), from_normal(0);
+        SampledLight sampled;
         for (int depth = 1;; ++depth) {
             const auto hit = scene.intersect(ray);
             if (!hit) {
                 const Rgb radiance = scene.environment(ray.direction);
-                const float weight =
-                    light_sampled ? power_heuristic(pdf, scene.environment_pdf(from_normal, ray.direction)) : 1;
-                sum += throughput * radiance * weight;
+                sum += throughput * radiance * sampled.weight_of_environment(scene, ray.direction);
                 break;
             }
             const Vec3 wo = -ray.direction;
             if (hit->light) {
                 const Rgb radiance = scene.emitted(*hit, wo);
-                if (!is_black(radiance)) {
-                    const float weight =
-                        light_sampled ? power_heuristic(pdf, scene.light_pdf(from, ray.direction, *hit)) : 1;
-                    sum += throughput * radiance * weight;
-                }
+                if (!is_black(radiance)) sum += throughput * radiance * sampled.weight(scene, *hit);
             }
             if (depth == max_depth) break;
 
@@ -69,10 +60,7 @@ struct PathTracerNee {
             throughput *= scattered->weight;
             eta *= scattered->eta;
             if (!survives_roulette(throughput, eta, depth, rr_depth, choices.y)) break;
-            light_sampled = !scattered->specular;
-            pdf = scattered->pdf;
-            from = hit->position;
-            from_normal = hit->facing_normal();
+            sampled.leave(*hit, scattered->pdf, !scattered->specular);
             ray = hit->spawn(basis.to_world(scattered->wi));
         }
         return sum;

@@ -3,6 +3,7 @@
 #include <lightswitch/method/hash_grid.hpp>
 #include <lightswitch/method/merging.hpp>
 #include <lightswitch/method/path_records.hpp>
+#include <lightswitch/method/sampled_light.hpp>
 #include <lightswitch/render/frame.hpp>
 #include <lightswitch/render/method.hpp>
 
@@ -47,7 +48,7 @@ struct PhotonMapping {
     void iterate(auto& frame, State& state) const {
         if (max_depth == 0) return;
         const auto& scene = frame.scene();
-        const double wanted = paths_per_pixel * frame.width() * frame.height();
+        const double wanted = paths_per_pixel * double(frame.area());
         const auto light_paths = static_cast<std::uint64_t>(std::max(wanted, 1.0));
         state.paths.reset(light_paths);
         frame.paths(light_paths, [&](std::uint64_t path, auto& sampler, auto&) {
@@ -69,21 +70,13 @@ private:
         Rgb sum(0), throughput(1);
         float eta = 1;
         bool gather = !final_gather;
-        // As in `PathTracerNee`: what light sampling could have found at the vertex before, if there was any.
-        bool light_sampled = false;
-        SolidAnglePdf pdf;
-        Vec3 from(0), from_normal(0);
+        SampledLight sampled;
         for (int depth = 1;; ++depth) {
             const auto hit = scene.intersect(ray);
-            if (!hit) {
-                const float weight =
-                    light_sampled ? power_heuristic(pdf, scene.environment_pdf(from_normal, ray.direction)) : 1;
-                return sum + throughput * scene.environment(ray.direction) * weight;
-            }
-            if (hit->light) {
-                const float weight = light_sampled ? power_heuristic(pdf, scene.light_pdf(from, ray.direction, *hit)) : 1;
-                sum += throughput * scene.emitted(*hit, hit->wo) * weight;
-            }
+            if (!hit)
+                return sum + throughput * scene.environment(ray.direction) *
+                                 sampled.weight_of_environment(scene, ray.direction);
+            if (hit->light) sum += throughput * scene.emitted(*hit, hit->wo) * sampled.weight(scene, *hit);
             if (depth == max_depth) return sum;
             const bool diffuse = connectable(scene, *hit);
             if (diffuse && gather) return sum + throughput * estimate(scene, *hit, depth, map) * share;
@@ -101,10 +94,7 @@ private:
             throughput *= scattered->weight;
             eta *= scattered->eta;
             if (!survives_roulette(throughput, eta, depth, rr_depth, choices.y)) return sum;
-            light_sampled = diffuse && !scattered->specular;
-            pdf = scattered->pdf;
-            from = hit->position;
-            from_normal = hit->facing_normal();
+            sampled.leave(*hit, scattered->pdf, diffuse && !scattered->specular);
             ray = hit->spawn(basis.to_world(scattered->wi));
         }
     }

@@ -19,8 +19,9 @@ inline double heuristic(double ratio) { return ratio * ratio; }
 /// How merging (of camera path vertices with the light path vertices around them) is weighed against connecting. Both 0 for a method
 /// that only connects. With n light paths per iteration and radius r, merging has n pi r^2 times the density of a connection.
 struct MergeWeights {
-    double merge = 0;    ///< heuristic(n pi r^2)
-    double connect = 0;  ///< heuristic(1 / (n pi r^2))
+    double merges = 0;   ///< n pi r^2
+    double merge = 0;    ///< heuristic(merges)
+    double connect = 0;  ///< heuristic(1 / merges)
 };
 
 /// Sums over all strategies that make the path before a vertex otherwise, each as a ratio of densities (through `heuristic`), without
@@ -135,17 +136,16 @@ public:
     /// direction, `choices.y` is for Russian roulette after `rr_depth` bounces.
     [[gnu::always_inline]] bool scatter(const auto& scene, const Vec2& direction, const Vec2& choices, int rr_depth) {
         const SurfacePoint& at = vertex_.point;
-        const Basis basis = at.shading_frame();
-        const Vec3 from = basis.to_local(at.wo);
+        const Arrival arrival(at);
         SolidAnglePdf reverse;
         const auto scattered = scene.with_bsdf(at, [&](const auto& bsdf) __attribute__((always_inline)) {
-            const auto result = bsdf.sample(from, Vec3(direction, choices.x), transport);
+            const auto result = bsdf.sample(arrival.from, Vec3(direction, choices.x), transport);
             if constexpr (!std::remove_cvref_t<decltype(bsdf)>::specular)
-                if (result && !result->specular) reverse = bsdf.evaluate(result->wi, from, transport).pdf;
+                if (result && !result->specular) reverse = bsdf.evaluate(result->wi, arrival.from, transport).pdf;
             return result;
         });
         if (!scattered) return false;
-        const Vec3 out = basis.to_world(scattered->wi);
+        const Vec3 out = arrival.basis.to_world(scattered->wi);
         beta_ *= scattered->weight;
         if constexpr (transport == Transport::importance) {
             const float cosine = std::abs(scattered->wi.z);
@@ -157,8 +157,7 @@ public:
 
         const double cosine = std::abs(dot(at.normal, out));
         PartialWeights& w = vertex_.weights;
-        specular_ = scattered->specular;
-        if (specular_) {  // nothing can connect or merge here; the densities of both directions cancel
+        if (scattered->specular) {  // nothing can connect or merge here; the densities of both directions cancel
             w = {.last = 0, .connections = w.connections * heuristic(cosine), .merges = w.merges * heuristic(cosine)};
         } else {
             const double pdf = scattered->pdf.value, forward = heuristic(cosine / pdf), back = heuristic(reverse.value);
@@ -179,15 +178,12 @@ public:
     const Vec3& previous_normal() const { return previous_normal_; }
     /// What the path carries along its ray.
     Rgb carried() const { return start_ * beta_; }
-    /// Whether the last bounce was off a Dirac distribution.
-    bool specular() const { return specular_; }
 
 private:
     Ray ray_;
     PathVertex vertex_;
     Rgb start_{1}, beta_{1};
     float eta_ = 1;  // product of the relative indices of refraction crossed, for roulette
-    bool specular_ = false;
     Vec3 previous_{0}, previous_normal_{0};
     MergeWeights merge_weights_;
     double light_paths_ = 0;

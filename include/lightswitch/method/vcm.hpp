@@ -17,7 +17,7 @@ struct Vcm {
 
     int max_depth = PathLength{}.max_depth;  ///< see `PathLength`
     int rr_depth = PathLength{}.rr_depth;    ///< of whole paths: each of the two that make one counts half as many
-    MergeRadius radius = {};  ///< with 0 pixels nothing is merged: bidirectional path tracing
+    MergeRadius radius = {};                 ///< with 0 pixels nothing is merged: bidirectional path tracing
 
     class State {
     public:
@@ -44,11 +44,10 @@ struct Vcm {
         if (max_depth == 0) return;
         const auto& scene = frame.scene();
         const PathLength length{max_depth, rr_depth / 2};
-        const std::uint64_t light_paths = std::uint64_t(frame.width()) * std::uint64_t(frame.height());
+        const std::uint64_t light_paths = frame.area();
         const double n = double(light_paths);
         const float r = radius.at(frame.iteration(), state.footprint);
         const MergeWeights weights = merge_weights(n, r);
-        const double merges = n * double(pi) * double(r) * double(r);
         const auto count = [](const Contribution& contribution, int, int) { return contribution.value * contribution.weight; };
 
         state.paths.reset(light_paths);
@@ -69,7 +68,7 @@ struct Vcm {
                 Rgb sum(0);
                 state.map.for_each_near(z.point.position, [&](const WeighedPhoton& y) {
                     if (max_depth >= 0 && y.edges + z.edges > max_depth) return;
-                    sum += count(merge(scene, y, z, at_z, merges, weights), 0, 0);
+                    sum += count(merge(scene, y, z, at_z, weights), 0, 0);
                 });
                 return sum;
             };

@@ -148,6 +148,8 @@ public:
     const SceneType& scene() const { return scene_; }
     int width() const { return film_.width(); }
     int height() const { return film_.height(); }
+    /// Number of pixels.
+    std::size_t area() const { return film_.area(); }
     std::uint64_t iteration() const { return iteration_; }
     const E& executor() const { return executor_; }
     /// True when the loop has been asked to end; the iteration's result is then thrown away, so a method may return early.
@@ -166,7 +168,8 @@ public:
             const int x0 = static_cast<int>(unit) % columns * tile, y0 = static_cast<int>(unit) / columns * tile;
             sample_tile(points, x0, y0, fn, splatter, report);
         };
-        run_units(static_cast<std::uint64_t>(columns) * static_cast<std::uint64_t>(rows), work);
+        const std::uint64_t units = static_cast<std::uint64_t>(columns) * static_cast<std::uint64_t>(rows);
+        run_units(units, can_splat<F> ? units_per_wave : units, work);
     }
 
     /// Calls `fn(index, sampler, splatter)` for every index in [0, n): typically one light path each. Splats are added to the
@@ -175,7 +178,7 @@ public:
     void paths(std::uint64_t n, const auto& fn, std::uint64_t per_unit = paths_per_unit) {
         counts_.paths += n;
         const IterationPoints points = points_of_pass(2 * path_passes_++ + 1);
-        run_units((n + per_unit - 1) / per_unit, [&](std::uint64_t unit, Splatter& splatter, detail::UnitReport&) {
+        run_units((n + per_unit - 1) / per_unit, units_per_wave, [&](std::uint64_t unit, Splatter& splatter, detail::UnitReport&) {
             trace_paths(points, unit * per_unit, std::min((unit + 1) * per_unit, n), fn, splatter);
         });
     }
@@ -184,16 +187,20 @@ private:
     static constexpr int tile = 16;
     static constexpr std::uint64_t units_per_wave = 256;  // bounds the memory that splats take before they reach the film
     static constexpr std::uint32_t pixel_stream = 0, path_stream = 1;
+    /// Whether the function of `pixels` can splat.
+    template <class F>
+    static constexpr bool can_splat = std::invocable<const F&, const Ray&, Sampler&, const PixelContext&>;
 
     /// Pass 0 is the first call of `pixels`, whatever else a method does: so all methods see the same camera rays.
     IterationPoints points_of_pass(std::uint64_t pass) const {
         return {sampling_, pass == 0 ? seed_ : detail::mix64(seed_ + pass * 0x9e3779b97f4a7c15u), iteration_};
     }
 
-    /// Runs `work(unit, splatter, report)` for every unit in parallel and then folds, in the order of the units, what they leave.
-    void run_units(std::uint64_t units, const auto& work) {
-        for (std::uint64_t first = 0; first < units && !stopped(); first += units_per_wave) {
-            const std::size_t wave = static_cast<std::size_t>(std::min<std::uint64_t>(units_per_wave, units - first));
+    /// Runs `work(unit, splatter, report)` for every unit, `per_wave` of them in parallel, and then folds, in the order of the units,
+    /// what they leave.
+    void run_units(std::uint64_t units, std::uint64_t per_wave, const auto& work) {
+        for (std::uint64_t first = 0; first < units && !stopped(); first += per_wave) {
+            const std::size_t wave = static_cast<std::size_t>(std::min<std::uint64_t>(per_wave, units - first));
             std::vector<detail::UnitReport> reports(wave);
             std::vector<std::vector<Splat>> splats(wave);
             executor_.for_each(wave, [&](std::size_t unit) {
@@ -236,7 +243,7 @@ private:
         const Camera& camera = scene_.camera();
         const Ray ray = camera.ray(position, camera.has_lens() ? sampler.next_2d() : Vec2(0.5f));
         Rgb value;
-        if constexpr (std::invocable<const F&, const Ray&, Sampler&, const PixelContext&>)
+        if constexpr (can_splat<F>)
             value = fn(ray, sampler, PixelContext{pixel, splatter});
         else
             value = fn(ray, sampler);
