@@ -18,8 +18,10 @@ AnyMethod find_method(std::string_view wanted, std::string_view option, std::str
 int list_methods() {
     for_each_method([](const auto& method) {
         const MethodNotes& notes = notes_on(method.name);
-        fmt::print("{:<12}{:<12}can:    {}\n{:<24}cannot: {}\n", method.name, lightswitch::name(method.kind), notes.can,
-                   "", notes.cannot);
+        fmt::print("{:<12}{:<12}can:    {}\n", method.name, lightswitch::name(method.kind), notes.can);
+        const std::string lacking = describe(lightswitch::cannot_make<std::remove_cvref_t<decltype(method)>>());
+        if (!lacking.empty()) fmt::print("{:<24}cannot: show {}\n", "", lacking);
+        if (!notes.cannot.empty()) fmt::print("{:<24}cannot: {}\n", "", notes.cannot);
     });
     fmt::print(
         "\nunbiased:   the expected image is exact for any number of samples\n"

@@ -183,7 +183,8 @@ void add_verify(CLI::App& app, VerifyCommand& command) {
         ->delimiter(',')
         ->allow_extra_args(false);
     app.add_option("-r,--reference", command.reference,
-                   "what to verify them against (default: path; path-nee for scenes\nwith point or directional lights)")
+                   "what to verify them against, which must be unbiased (default:\npath-nee; path where that is in question; bdpt where the others "
+                   "cannot\nmake the paths, or make more than what is verified)")
         ->type_name("NAME");
     add_names("--images", "FILES", command.images,
               "instead of methods: independent renders (different seeds) of the\nscene by any renderer, such as "
@@ -192,7 +193,7 @@ void add_verify(CLI::App& app, VerifyCommand& command) {
     add_value(
         app, "--seconds", "S",
         [&](const std::string& text) { command.options.seconds = parse_number_option("--seconds", text, 0, true); },
-        "of rendering, in all, but at least three images of each\n(default: 60). It ends as soon as every question is "
+        "on the clock, in all, but at least three images of each\n(default: 60). It ends as soon as every question is "
         "decided");
     add_value(
         app, "--confidence", "C",

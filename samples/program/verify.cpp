@@ -89,17 +89,33 @@ struct Contest {
     std::optional<Estimator> reference;
 };
 
-bool has_dirac_lights(const SceneSummary& summary) { return summary.point_lights + summary.directional_lights > 0; }
+PathClasses possible(const AnyScene& scene) {
+    return std::visit([](const auto& s) { return possible_paths(s); }, scene);
+}
 
-/// The methods that are asked for, or all that can be verified on the scene.
-std::vector<std::string> chosen_methods(const VerifyCommand& command, const SceneSummary& summary,
-                                        const std::string& reference) {
+/// The simplest reference that misses nothing, or that can leave out what the methods miss. Of files nothing is known: most
+/// renderers' path tracers sample lights.
+std::string chosen_reference(const VerifyCommand& command, const PathClasses& possible) {
+    if (!command.reference.empty()) return command.reference;
+    if (!command.images.empty() && possible.dirac_light) return std::string(PathTracerNee::name);
+    const bool some_cannot = std::any_of(command.methods.begin(), command.methods.end(), [&](const std::string& method) {
+        return ((cannot_make(method) - Bdpt::cannot_make) & possible).any();
+    });
+    if (possible.dirac_caustic || some_cannot) return std::string(Bdpt::name);
+    // Sampling lights makes far less noise than meeting them by chance; where it is itself in question, chance judges.
+    const bool in_question = std::find(command.methods.begin(), command.methods.end(), PathTracerNee::name) != command.methods.end();
+    return std::string(in_question && !possible.dirac_light ? PathTracer::name : PathTracerNee::name);
+}
+
+/// The methods that are asked for, or all that make what the reference makes or can leave out, and more than nothing.
+std::vector<std::string> chosen_methods(const VerifyCommand& command, const PathClasses& possible, const std::string& reference) {
     if (!command.methods.empty()) return command.methods;
+    const PathClasses can_leave_out = reference == Bdpt::name ? Bdpt::can_leave_out : PathClasses{};
     std::vector<std::string> names;
     for_each_method([&](const auto& m) {
-        bool blind = has_dirac_lights(summary) && !notes_on(m.name).sees_dirac_lights;
-        blind |= summary.specular && !notes_on(m.name).sees_in_mirrors;
-        if (m.kind != Kind::heuristic && m.name != reference && !blind) names.emplace_back(m.name);
+        const PathClasses missing = cannot_make(m.name) & possible;
+        const bool comparable = !(missing - cannot_make(reference) - can_leave_out).any() && !missing.dirac_light;
+        if (m.kind != Kind::heuristic && m.name != reference && comparable) names.emplace_back(m.name);
     });
     if (names.empty())  // then at least with itself, which tests its noise
         names.push_back(reference);
@@ -154,8 +170,8 @@ Contest make_contest(const VerifyCommand& command, const std::stop_token& stop) 
     const SceneSummary& summary = contest.loaded->summary;
     contest.title = command.scene.scene;
 
-    std::string reference = command.reference;
-    if (reference.empty()) reference = has_dirac_lights(summary) ? PathTracerNee::name : PathTracer::name;
+    const PathClasses possible_here = possible(contest.loaded->scene);
+    const std::string reference = chosen_reference(command, possible_here);
     const PathLength length = path_length(summary, command.max_depth, {});
     std::vector<AnyMethod> methods;
     const auto add = [&](const std::string& wanted, std::string_view option) {
@@ -166,24 +182,13 @@ Contest make_contest(const VerifyCommand& command, const std::stop_token& stop) 
     };
     add(reference, "--reference");
     if (!from_files)
-        for (const std::string& wanted : chosen_methods(command, summary, reference)) add(wanted, "--methods");
+        for (const std::string& wanted : chosen_methods(command, possible_here, reference)) add(wanted, "--methods");
     set_options(methods, command.of_methods, std::size_t(summary.size.width) * std::size_t(summary.size.height));
 
     const Settings settings{.threads = command.options.threads, .stop = stop};
-    for (const AnyMethod& method : methods) {
-        const std::string_view name = method_name(method);
-        const MethodNotes& notes = notes_on(name);
-        if (has_dirac_lights(summary) && !notes.sees_dirac_lights)
-            print_warning(fmt::format(
-                "the method {} cannot see the scene's point and directional lights, and will not agree", name));
-        if (summary.specular && !notes.sees_in_mirrors)
-            print_warning(
-                fmt::format("the method {} cannot see what is in mirrors and behind glass, and will not agree where "
-                            "the camera sees any",
-                            name));
+    for (const AnyMethod& method : methods)
         contest.methods.push_back(
             std::visit([&](const auto& m) { return make_estimator(contest.loaded->scene, m, settings); }, method));
-    }
     // The reference came first; or second, after the files.
     const auto first = contest.methods.begin() + (from_files ? 1 : 0);
     contest.reference = *first;
@@ -217,6 +222,10 @@ Json part_json(const Verdict::Part& part) {
               {"reference", part.theirs}}}};
 }
 
+Json classes_json(const PathClasses& classes) {
+    return classes.any() ? Json(describe(classes)) : Json();
+}
+
 Json verdict_json(const Verdict& v) {
     Json parts = Json::array(), tiles = Json::array();
     for (const Verdict::Part& part : v.parts) parts.push_back(part_json(part));
@@ -231,6 +240,9 @@ Json verdict_json(const Verdict& v) {
             {"reason", v.reason},
             {"first_wrong_length", v.first_wrong_length == 0 ? Json() : Json(v.first_wrong_length)},
             {"correlated_pixels", v.correlated_pixels},
+            {"left_out", classes_json(v.left_out)},
+            {"method_lacks", classes_json(v.method_lacks)},
+            {"reference_lacks", classes_json(v.reference_lacks)},
             {"confidence", v.confidence},
             {"tolerance", v.tolerance},
             {"images", v.images},
@@ -239,6 +251,7 @@ Json verdict_json(const Verdict& v) {
             {"reference_samples_per_pixel", v.reference_samples},
             {"seconds", v.seconds},
             {"reference_seconds", v.reference_seconds},
+            {"seconds_to_decide", v.seconds_to_decide > 0 ? Json(v.seconds_to_decide) : Json()},
             {"rare_events", v.events},
             {"non_finite", v.non_finite},
             {"reference_non_finite", v.reference_non_finite},
@@ -269,8 +282,11 @@ int verify(const VerifyCommand& command) {
     VerifyOptions options = command.options;
     options.stop = cancellation.token();
     options.observer = [&](const VerifyProgress& progress) {
-        line.update(progress.seconds, fmt::format("{:.0f} s of at most {:.0f} s: {}, {} images", progress.seconds,
-                                                  options.seconds, progress.method, progress.images));
+        const std::string forecast = progress.seconds_to_decide > 0 && progress.seconds_to_decide < 1e5
+                                         ? fmt::format("; decided after about {:.2g} s", progress.seconds_to_decide)
+                                         : "";
+        line.update(progress.seconds, fmt::format("{:.0f} s of at most {:.0f} s: {}, {} images{}", progress.seconds,
+                                                  options.seconds, progress.method, progress.images, forecast));
     };
     const std::vector<Verdict> verdicts = Verification(*contest.reference, contest.methods, options).run();
     line.clear();

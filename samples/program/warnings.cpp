@@ -32,7 +32,7 @@ void warn_about_clipping(const LoadedScene& loaded) {
 
 void warn_about_scene(const LoadedScene& loaded, std::string_view method) {
     const std::size_t dirac = loaded.summary.point_lights + loaded.summary.directional_lights;
-    if (dirac > 0 && !notes_on(method).sees_dirac_lights)
+    if (dirac > 0 && cannot_make(method).dirac_light)
         print_warning(
             fmt::format("the method {} cannot see the scene's {} point and directional lights: what they light "
                         "stays dark; use {}",

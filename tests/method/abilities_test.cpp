@@ -1,4 +1,5 @@
-// What the table of methods in the README says of each: one test per column, all methods in each.
+// What the methods say that they cannot make (`PathClasses`): a scene for each class, and for what all can make; all methods in
+// each. And the tables of README and docs/methods.md say the same.
 
 #include <lightswitch/render/any_method.hpp>
 #include <lightswitch/render/render.hpp>
@@ -6,7 +7,10 @@
 
 #include <doctest/doctest.h>
 
+#include <fstream>
 #include <map>
+#include <sstream>
+#include <string>
 
 using namespace lightswitch;
 
@@ -53,16 +57,19 @@ std::map<std::string_view, double> shares(const LibraryDescription& description,
     return means;
 }
 
-/// Those named show it all, within `tolerance`; the others hardly any of it.
-void check_only(const std::map<std::string_view, double>& shares, std::initializer_list<std::string_view> able, double tolerance) {
+/// Those that make the paths of `member` (what a scene shows; null: what all methods make) show it all, within `tolerance`; the
+/// others hardly any of it.
+void check_who_shows(const std::map<std::string_view, double>& shares, bool PathClasses::*member, double tolerance) {
     REQUIRE(shares.size() == 7);
-    for (const auto& [name, share] : shares) {
-        CAPTURE(name);
-        if (std::find(able.begin(), able.end(), name) != able.end())
-            CHECK(std::abs(share - 1) < tolerance);
-        else
+    for_each_method([&]<class M>(const M&) {
+        if (M::kind == Kind::heuristic) return;
+        CAPTURE(M::name);
+        const double share = shares.at(M::name);
+        if (member && cannot_make<M>().*member)
             CHECK(share < 0.3);  // what comes by other ways than the one that is asked for
-    }
+        else
+            CHECK(std::abs(share - 1) < tolerance);
+    });
 }
 
 }  // namespace
@@ -70,20 +77,20 @@ void check_only(const std::map<std::string_view, double>& shares, std::initializ
 TEST_CASE("abilities: the caustic of a point light on a diffuse surface") {
     LibraryDescription scene = describe_glass_sphere();
     look(scene, {2, 0.35, 0}, {0, 0, 0});  // below the sphere, where no light comes but through it
-    check_only(shares(scene, "vcm", 256), {"light", "bdpt", "photon", "vcm", "mlt"}, 0.1);
+    check_who_shows(shares(scene, "vcm", 256), &PathClasses::dirac_caustic, 0.1);
 }
 
 TEST_CASE("abilities: the caustic of a point light, seen in a mirror") {
     LibraryDescription scene = describe_glass_sphere();
     scene.add(quad({2, 0, -1}, {2, 0, 1}, {2, 1, 1}, {2, 1, -1}), scene.add(TwoSided<Conductor>{}));
     look(scene, {1, 0.35, 0}, {4, 0, 0});  // the mirror image of the place below the sphere
-    check_only(shares(scene, "vcm", 256), {"photon", "vcm"}, 0.1);
+    check_who_shows(shares(scene, "vcm", 256), &PathClasses::mirrored_dirac_caustic, 0.1);
 }
 
 TEST_CASE("abilities: a diffuse surface under a point light") {
     LibraryDescription scene = describe_glass_sphere();
     look_at_floor(scene);
-    check_only(shares(scene, "path-nee", 512), {"path-nee", "light", "bdpt", "photon", "vcm", "mlt"}, 0.04);
+    check_who_shows(shares(scene, "path-nee", 512), &PathClasses::dirac_light, 0.04);
 }
 
 TEST_CASE("abilities: a diffuse surface under a sky") {
@@ -91,7 +98,7 @@ TEST_CASE("abilities: a diffuse surface under a sky") {
     scene.sources.clear();
     scene.add(EnvironmentSource{Rgb(1)});
     look_at_floor(scene);
-    check_only(shares(scene, "path-nee", 512), {"path", "path-nee", "light", "bdpt", "photon", "vcm", "mlt"}, 0.04);
+    check_who_shows(shares(scene, "path-nee", 512), nullptr, 0.04);
 }
 
 TEST_CASE("abilities: a lamp's reflection in rough metal") {
@@ -101,7 +108,7 @@ TEST_CASE("abilities: a lamp's reflection in rough metal") {
     scene.camera.fov = 20;
     scene.film.width = scene.film.height = 16;
     look(scene, {1.5, 2, 0}, {0.75, 0, 0});
-    check_only(shares(scene, "path-nee", 128), {"path", "path-nee", "light", "bdpt", "photon", "vcm", "mlt"}, 0.05);
+    check_who_shows(shares(scene, "path-nee", 128), nullptr, 0.05);
 }
 
 TEST_CASE("abilities: a diffuse surface seen in a mirror") {
@@ -112,5 +119,20 @@ TEST_CASE("abilities: a diffuse surface seen in a mirror") {
     scene.camera.fov = 6;
     scene.film.width = scene.film.height = 16;
     look(scene, {1, 0.6, 0}, {4, 0, 0});
-    check_only(shares(scene, "path-nee", 512), {"path", "path-nee", "bdpt", "photon", "vcm", "mlt"}, 0.05);
+    check_who_shows(shares(scene, "path-nee", 512), &PathClasses::mirrored, 0.05);
+}
+
+TEST_CASE("abilities: the table in the docs says what the methods say") {
+    std::ifstream file(LIGHTSWITCH_TESTS_DIR "/../docs/methods.md");
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    REQUIRE(text.find("| method | caustic | caustic in a mirror | point light | sky | rough metal | seen in a mirror |") !=
+            std::string::npos);
+    for_each_method([&]<class M>(const M&) {
+        if (M::kind == Kind::heuristic) return;
+        const PathClasses no = cannot_make<M>();
+        std::string row = "\n| `" + std::string(M::name) + "` |";
+        for (const bool cannot : {no.dirac_caustic, no.mirrored_dirac_caustic, no.dirac_light, false, false, no.mirrored})
+            row += cannot ? " no |" : " yes |";
+        CHECK_MESSAGE(text.find(row + "\n") != std::string::npos, row);
+    });
 }

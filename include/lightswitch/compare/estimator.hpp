@@ -3,6 +3,7 @@
 // A source of independent images with one expected value: a method on a scene, files of another renderer, or the
 // exact image.
 
+#include <lightswitch/compare/brightest.hpp>
 #include <lightswitch/render/render.hpp>
 #include <lightswitch/scene/scene.hpp>
 
@@ -24,6 +25,7 @@ struct Estimator {
             0;               ///< how many images were asked for before, for sources that have a fixed number of them
         int iterations = 1;  ///< samples per pixel
         int max_depth = unlimited;  ///< longest path, or what the method itself says
+        PathClasses left_out = {};  ///< paths that are not to be made, of those in `Estimator::can_leave_out`
         std::stop_token stop = {};  ///< ends the render early; the image is then thrown away
 
         static constexpr int unlimited = -1;
@@ -33,11 +35,13 @@ struct Estimator {
     Kind kind = Kind::unbiased;
     bool limits_depth = false;           ///< honours `Request::max_depth`
     int max_depth = Request::unlimited;  ///< longest path of the whole image
+    PathClasses missing = {};            ///< paths that the scene may hold and the method does not make
+    PathClasses can_leave_out = {};      ///< honours `Request::left_out`
     bool independent_pixels = false;     ///< pixels share no random numbers: true of pixel methods
     bool exact = false;                  ///< has no noise: one image is all there is to know
     std::uint64_t available = 0;         ///< number of images that there are; 0: as many as one asks for
-    /// The largest radiance that a path can meet by chance, per channel and for one sample per pixel; 0 when it is
-    /// not known. What was not seen yet may be as bright.
+    /// The largest radiance that a path can find by chance, per channel and for one sample per pixel
+    /// (`brightest_event`); 0 when it is not known. What was not seen yet may be as bright.
     Rgb brightest{0};
     std::function<Image(const Request&)> render;
 };
@@ -53,14 +57,19 @@ Estimator estimator(const SceneType& scene, const M& method, const Settings& set
     result.limits_depth = limits_depth;
     result.independent_pixels = PixelMethod<M, SceneType>;
     if constexpr (limits_depth) result.max_depth = method.max_depth;
-    for (const Emitter& emitter : scene.emitters())
-        if (emitter.kind == Emitter::Kind::surface || emitter.kind == Emitter::Kind::environment)
-            result.brightest = glm::max(result.brightest, emitter.strength);
+    constexpr bool leaves_out = requires(M m) { m.left_out = M::can_leave_out; };
+    PathClasses missing = cannot_make<M>();
+    if constexpr (leaves_out) missing = missing | method.left_out;
+    result.missing = possible_paths(scene) & missing;
+    if (result.max_depth >= 0 && result.max_depth < result.missing.shortest()) result.missing = {};
+    if constexpr (leaves_out) result.can_leave_out = M::can_leave_out;
+    result.brightest = brightest_event(scene);
     result.render = [&scene, method, settings](const Estimator::Request& request) {
         M limited = method;
         if constexpr (limits_depth)
             if (request.max_depth >= 0 && (method.max_depth < 0 || request.max_depth < method.max_depth))
                 limited.max_depth = request.max_depth;
+        if constexpr (leaves_out) limited.left_out = method.left_out | request.left_out;
         Settings own = settings;
         own.seed = request.seed;
         own.stop = request.stop;

@@ -26,6 +26,9 @@ public:
     }
 
     const Estimator& estimator() const { return estimator_; }
+    /// Paths that the images are to be without.
+    void leave_out(const PathClasses& classes) { left_out_ = classes; }
+    const PathClasses& left_out() const { return left_out_; }
     const TileLayout& layout() const { return parts_[0].layout(); }
     std::uint64_t count() const { return parts_[0].count(); }
     bool exact() const { return estimator_.exact; }
@@ -35,6 +38,22 @@ public:
     /// Per pixel, in all images.
     std::uint64_t samples_drawn() const { return exact() ? 0 : count() * static_cast<std::uint64_t>(iterations_); }
     std::uint64_t non_finite() const { return non_finite_; }
+    /// Samples per pixel of each image.
+    int samples() const { return iterations_; }
+    /// How many images `draw` makes at a time at most.
+    std::uint64_t batch() const {
+        constexpr std::uint64_t small = 128 * 128;  // one alone would not occupy all processors
+        return !sum_.empty() && sum_.size() <= small ? 8 : 1;
+    }
+    /// Seconds that an image takes; 0 when that is not known yet.
+    double seconds_per_image() const { return seconds_per_image_; }
+
+    /// The variance of the mean of one image, or what would be as uncertain: of images that rest on events that may not have been
+    /// met yet.
+    double variance_per_image() const {
+        const Estimate e = estimates(0, 0)[0][1];
+        return double(count()) * std::max(e.variance, 6.25 * e.unseen * e.unseen);
+    }
 
     /// Number of parts, and what they are.
     std::size_t parts() const { return parts_.size(); }
@@ -95,14 +114,16 @@ public:
                 }
                 add(images);
                 seconds_ += taken;
+                seconds_per_image_ = taken;
                 return;
             }
             iterations_ *= 2;
         }
     }
-    /// Forgets all images.
-    void restart_with_twice_the_samples() {
-        iterations_ *= 2;
+    /// Forgets all images; the next ones have `factor` times the samples, but at least one.
+    void restart(double factor) {
+        iterations_ = std::max(1, static_cast<int>(iterations_ * factor));
+        seconds_per_image_ *= factor;
         for (TileMoments& part : parts_) part = TileMoments();
         sum_.clear();
         previous_.reset();
@@ -110,18 +131,17 @@ public:
         seed_ = mix64(seed_);
     }
 
-    /// Adds up to `wanted` images, as many as are worth making at a time; false when the run was stopped meanwhile.
-    /// Small images are rendered side by side: one alone would not occupy all processors.
+    /// Adds up to `wanted` images, `batch()` of them at most, side by side; false when the run was stopped meanwhile.
     bool draw(std::uint64_t wanted, const std::stop_token& stop, const Executor auto& executor) {
         const auto begin = Clock::now();
-        constexpr std::uint64_t small = 128 * 128;
-        const bool side_by_side = !sum_.empty() && sum_.size() <= small;
-        std::vector<std::vector<Image>> images(side_by_side ? std::min<std::uint64_t>(wanted, 8) : 1);
+        std::vector<std::vector<Image>> images(std::min(wanted, batch()));
         executor.for_each(images.size(), [&](std::size_t i) { images[i] = render_all(drawn_ + i, stop); });
         if (stop.stop_requested()) return false;
         drawn_ += images.size();
         for (const auto& image : images) add(image);
-        seconds_ += std::chrono::duration<double>(Clock::now() - begin).count();
+        const double taken = std::chrono::duration<double>(Clock::now() - begin).count();
+        seconds_ += taken;
+        seconds_per_image_ = taken / double(images.size());
         return true;
     }
 
@@ -163,8 +183,11 @@ private:
 
     std::vector<Image> render_all(std::uint64_t index, const std::stop_token& stop) const {
         std::vector<Image> images;
-        Estimator::Request request{
-            .seed = mix64(seed_ + index), .index = index, .iterations = iterations_, .stop = stop};
+        Estimator::Request request{.seed = mix64(seed_ + index),
+                                   .index = index,
+                                   .iterations = iterations_,
+                                   .left_out = left_out_,
+                                   .stop = stop};
         for (int d = 1; d <= lengths_; ++d) {
             request.max_depth = d;
             images.push_back(estimator_.render(request));
@@ -244,7 +267,8 @@ private:
     std::uint64_t seed_;
     int lengths_ = 0, iterations_ = 1;
     std::uint64_t drawn_ = 0, non_finite_ = 0;
-    double seconds_ = 0;
+    double seconds_ = 0, seconds_per_image_ = 0;
+    PathClasses left_out_;
     std::vector<TileMoments> parts_;
     std::vector<DVec3> sum_;
     std::vector<Rgb> largest_;    // of each pixel, without the paths of length 1 where they are known

@@ -2,29 +2,24 @@
 
 // One look at two sets of images: every part, every tile size, every tile, every channel.
 
+#include <lightswitch/compare/bias_history.hpp>
 #include <lightswitch/compare/replicas.hpp>
 #include <lightswitch/compare/verdict.hpp>
 
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <vector>
+
 namespace lightswitch::detail {
 
-class TestOfParts;
+/// Paths that only one side makes. Where they may be, the side without them may well be the darker one.
+struct OneSided {
+    PathClasses ours_lack, theirs_lack;
 
-/// What the bias of a consistent method may be at this look: what it may have been at the first one, times a power of
-/// the ratio of samples. Progressive photon mapping's bias falls with the squared radius, on average over n
-/// iterations as n^(-1/3) (Knaus and Zwicker 2011, with alpha = 2/3); here a power of -1/4 is asked for.
-class ShrinkingBound {
-public:
-    double allowed(std::size_t part, std::size_t level, std::size_t tile, std::size_t channel) const {
-        if (looks_ == 0) return std::numeric_limits<double>::infinity();
-        return first_[part][level][tile][channel] * std::pow(2.0, -0.25 * looks_);
-    }
-    /// After each look; the samples are doubled from one to the next.
-    inline void learn(const TestOfParts& test);
-
-private:
-    friend class TestOfParts;
-    int looks_ = 0;
-    std::vector<std::vector<std::vector<std::array<double, 3>>>> first_;  // by part, level, tile, channel
+    bool any() const { return ours_lack.any() || theirs_lack.any(); }
 };
 
 /// The comparison of two sets of images at one look.
@@ -33,10 +28,21 @@ private:
 /// parts by length, in equal shares; each part shares in equal shares among the tile sizes, and there among tiles and
 /// channels. The sum of the probabilities of events bounds the probability of any, whatever depends on what
 /// (Bonferroni).
+///
+/// A consistent method (one with a `history`) is asked whether its bias shrinks. Where light or edges are finer than its radius
+/// it does not for a long time, so single tiles are no evidence: more than half of the tiles that are not black, and nine at
+/// least, must be off to the same side by more than they may. Were it fewer, then the rest, summed up, would not be; and those tiles
+/// that are off least sum up to no more than the rest.
 class TestOfParts {
 public:
-    TestOfParts(const Replicas& ours, const Replicas& theirs, double level, const ShrinkingBound* bound)
-        : ours_(ours), theirs_(theirs), scale_(theirs.scale()), level_(level), bound_(bound) {
+    TestOfParts(const Replicas& ours, const Replicas& theirs, double level, const OneSided& one_sided,
+                const BiasHistory* history)
+        : ours_(ours),
+          theirs_(theirs),
+          scale_(theirs.scale()),
+          level_(level),
+          one_sided_(one_sided),
+          history_(history) {
         const std::size_t count = ours.parts() == theirs.parts() ? ours.parts() : 1;
         for (std::size_t i = 0; i < count; ++i) {
             const double share = count == 1 ? 1 : i == 0 ? 0.5 : 0.5 / double(count - 1);
@@ -50,46 +56,163 @@ public:
     /// The smallest `VerifyOptions::tolerance` that all intervals of the first three tile sizes keep within; and what
     /// it would be if nothing rare could be missing.
     double needed_tolerance = 0, plain_tolerance = 0;
+    double observed_bias = 0;  ///< what it would have to be for what is seen, if there were no noise
+    /// Of a consistent method: whether the bias of some tile of the whole image (`Verdict::Part::worst`) exceeds what it may be.
+    bool stuck_somewhere = false;
+
+    /// For `BiasHistory`.
+    std::vector<BiasHistory::OfLevels> differences() const {
+        const TileLayout& layout = ours_.layout();
+        std::vector<BiasHistory::OfLevels> result(parts.size(), BiasHistory::OfLevels(layout.levels()));
+        for (std::size_t i = 0; i < parts.size(); ++i)
+            for (std::size_t l = 0; l < layout.levels(); ++l) {
+                const auto a = ours_.estimates(i, l), b = theirs_.estimates(i, l);
+                result[i][l].resize(a.size());
+                for (std::size_t t = 0; t < a.size(); ++t)
+                    for (std::size_t c = 0; c < 3; ++c) {
+                        const Estimate difference = a[t][c] - b[t][c];
+                        result[i][l][t][c] = {std::abs(difference.mean), difference.variance};
+                    }
+            }
+        return result;
+    }
 
 private:
-    friend class ShrinkingBound;
+    using OfTiles = std::vector<std::array<Estimate, 3>>;
+    struct Sides {
+        OfTiles ours, theirs;
+    };
+
+    /// Whether a difference in that direction says anything about the part.
+    bool is_evidence(const Verdict::Part& part, bool ours_is_less) const {
+        const PathClasses& lacking = ours_is_less ? one_sided_.ours_lack : one_sided_.theirs_lack;
+        const bool open_ended = part.length == 0 || part.and_longer;
+        return !lacking.any() || (!open_ended && part.length < lacking.shortest());
+    }
 
     void test(std::size_t i, double level) {
         Verdict::Part part;
         part.length = ours_.length(i);
         part.and_longer = ours_.and_longer(i);
         const TileLayout& layout = ours_.layout();
-        double worst = std::numeric_limits<double>::infinity();
+        double least_of_tiles = std::numeric_limits<double>::infinity(), least_of_votes = least_of_tiles;
+        bool found = false;
+        Sides whole;
         for (std::size_t l = 0; l < layout.levels(); ++l) {
             const auto a = ours_.estimates(i, l), b = theirs_.estimates(i, l);
+            const auto p = p_of_tiles(part, i, l, a, b);
+            if (l == 0) whole = {a, b};
+            if (i == 0 && l + 1 == layout.levels()) draw_p_values(layout, l, p);
             const double tests = 3 * double(layout.tiles(l)) * double(layout.levels());
-            const bool finest = i == 0 && l + 1 == layout.levels();
-            if (finest) p_values = Image(layout.columns(l), layout.rows(l));
             double largest = 0;  // of the significant differences on this level
             for (std::size_t t = 0; t < a.size(); ++t)
                 for (std::size_t c = 0; c < 3; ++c) {
-                    const double slack = rounding * (std::abs(a[t][c].mean) + std::abs(b[t][c].mean));
-                    const double p = welch_p(a[t][c], b[t][c], slack + (bound_ ? bound_->allowed(i, l, t, c) : 0));
-                    if (finest) p_values.pixels()[t][static_cast<int>(c)] = static_cast<float>(p);
                     // The place is the largest difference on the finest level that shows one; or else the most
                     // improbable.
                     const double off = std::abs(a[t][c].mean - b[t][c].mean);
-                    const bool significant = p * tests < level;
-                    if (significant ? off > largest : !part.disagrees && p * tests < worst) {
+                    const bool significant = p[t][c] * tests < level;
+                    if (significant ? off > largest : !found && p[t][c] * tests < least_of_tiles) {
                         part.worst = layout.tile(l, t);
                         part.worst_channel = static_cast<int>(c);
                         part.ours = a[t][c].mean;
                         part.theirs = b[t][c].mean;
                     }
                     if (significant) largest = std::max(largest, off);
-                    part.disagrees = part.disagrees || significant;
-                    worst = std::min(worst, p * tests);
+                    found = found || significant;
+                    least_of_tiles = std::min(least_of_tiles, p[t][c] * tests);
                 }
+            if (history_)
+                least_of_votes =
+                    std::min(least_of_votes, vote(part, i, l, {a, b}, whole) * 6 * double(layout.levels()));
             if (l == 0) measure_bias(part, a[0], b[0]);
             if (i == 0 && l < 3) measure_need(l, a, b);
         }
-        part.p = std::min(1.0, worst);
+        part.p = std::min(1.0, history_ ? least_of_votes : least_of_tiles);
+        part.disagrees = part.p < level;
+        if (i == 0) stuck_somewhere = history_ && found;
         parts.push_back(part);
+    }
+
+    std::vector<std::array<double, 3>> p_of_tiles(const Verdict::Part& part, std::size_t i, std::size_t l,
+                                                  const OfTiles& a, const OfTiles& b) const {
+        std::vector<std::array<double, 3>> p(a.size());
+        for (std::size_t t = 0; t < a.size(); ++t)
+            for (std::size_t c = 0; c < 3; ++c) {
+                const double slack = rounding * (std::abs(a[t][c].mean) + std::abs(b[t][c].mean));
+                double allowed = 0;
+                if (history_) {
+                    const auto bound = history_->allowed(double(ours_.samples()), i, l, t, c);
+                    allowed =
+                        bound ? bound->size + 4 * std::sqrt(bound->variance) : std::numeric_limits<double>::infinity();
+                }
+                p[t][c] =
+                    is_evidence(part, a[t][c].mean < b[t][c].mean) ? welch_p(a[t][c], b[t][c], slack + allowed) : 1;
+            }
+        return p;
+    }
+
+    void draw_p_values(const TileLayout& layout, std::size_t l, const std::vector<std::array<double, 3>>& p) {
+        p_values = Image(layout.columns(l), layout.rows(l));
+        for (std::size_t t = 0; t < p.size(); ++t)
+            for (std::size_t c = 0; c < 3; ++c) p_values.pixels()[t][static_cast<int>(c)] = static_cast<float>(p[t][c]);
+    }
+
+    /// The probability that the bias of a majority of tiles seems not to shrink though it does: for the channel and the sign where
+    /// that is least.
+    double vote(const Verdict::Part& part, std::size_t i, std::size_t l, const Sides& tiles, const Sides& whole) const {
+        double least = 1;
+        for (std::size_t c = 0; c < 3; ++c)
+            for (const double sign : {-1.0, 1.0})
+                if (is_evidence(part, sign < 0)) least = std::min(least, vote(i, l, c, sign, tiles, whole));
+        return least;
+    }
+    double vote(std::size_t i, std::size_t l, std::size_t c, double sign, const Sides& tiles,
+                const Sides& whole) const {
+        // In proportion to the tiles' brightness.
+        std::vector<double> excess;
+        std::array<std::vector<double>, 2> variances, thirds;  // of both sides
+        Estimate ours, theirs;
+        for (std::size_t t = 0; t < tiles.ours.size(); ++t) {
+            const Estimate &x = tiles.ours[t][c], &y = tiles.theirs[t][c];
+            const double brightness = std::max(std::abs(x.mean), std::abs(y.mean));
+            if (!(brightness > 1e-3 * scale_[c])) continue;
+            const auto allowed = history_->allowed(double(ours_.samples()), i, l, t, c);
+            if (!allowed) return 1;
+            const double weight = 1 / (brightness + 0.1 * scale_[c]), square = weight * weight;
+            excess.push_back(weight * (sign * (x.mean - y.mean) - allowed->size - rounding * brightness));
+            variances[0].push_back(square * (x.variance + allowed->variance));
+            variances[1].push_back(square * y.variance);
+            thirds[0].push_back(square * weight * x.third);
+            thirds[1].push_back(square * weight * y.third);
+            ours.unseen = std::max(ours.unseen, weight * x.unseen);
+            theirs.unseen = std::max(theirs.unseen, weight * y.unseen);
+            ours.freedom = std::min(ours.freedom, x.freedom);
+            theirs.freedom = std::min(theirs.freedom, y.freedom);
+        }
+        const std::size_t majority = std::max<std::size_t>(9, excess.size() / 2 + 1);
+        if (excess.size() < majority) return 1;
+        // Of any tiles, as many as are not in the majority.
+        const std::size_t rest = excess.size() - majority + 1;
+        const auto sum_of_first = [&](std::vector<double>& values, auto order) {
+            std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(rest) - 1, values.end(), order);
+            return std::accumulate(values.begin(), values.begin() + std::ptrdiff_t(rest), 0.0);
+        };
+        const double sum = sum_of_first(excess, std::less<>());
+        if (!(sum > 0)) return 1;
+        ours.variance = sum_of_first(variances[0], std::greater<>()) * dependence(tiles.ours, whole.ours, c);
+        theirs.variance = sum_of_first(variances[1], std::greater<>()) * dependence(tiles.theirs, whole.theirs, c);
+        ours.third = sum_of_first(thirds[0], std::greater<>());
+        theirs.third = sum_of_first(thirds[1], std::greater<>());
+        ours.mean = sign * sum;
+        return welch_p(ours, theirs);
+    }
+
+    /// By how much the variance of a sum of tiles exceeds that of independent ones.
+    static double dependence(const OfTiles& tiles, const OfTiles& whole, std::size_t c) {
+        double sum = 0;
+        for (const auto& tile : tiles) sum += tile[c].variance;
+        const double count = double(tiles.size());
+        return sum > 0 ? std::max(1.0, count * count * whole[0][c].variance / sum) : 1;
     }
 
     void measure_bias(Verdict::Part& part, const std::array<Estimate, 3>& a, const std::array<Estimate, 3>& b) {
@@ -105,7 +228,7 @@ private:
         }
     }
 
-    void measure_need(std::size_t l, const auto& a, const auto& b) {
+    void measure_need(std::size_t l, const OfTiles& a, const OfTiles& b) {
         const double tiles = double(a.size());
         for (std::size_t t = 0; t < a.size(); ++t)
             for (std::size_t c = 0; c < 3; ++c) {
@@ -118,6 +241,7 @@ private:
                 needed_tolerance = std::max(needed_tolerance, need());
                 ours.third = theirs.third = ours.unseen = theirs.unseen = 0;
                 plain_tolerance = std::max(plain_tolerance, need());
+                observed_bias = std::max(observed_bias, std::abs(ours.mean - theirs.mean) / (scale_[c] * tiles));
             }
     }
 
@@ -127,26 +251,8 @@ private:
     const Replicas &ours_, &theirs_;
     std::array<double, 3> scale_;  // what a bias is a fraction of
     double level_;
-    const ShrinkingBound* bound_;
+    OneSided one_sided_;
+    const BiasHistory* history_;
 };
-
-inline void ShrinkingBound::learn(const TestOfParts& test) {
-    if (looks_++ > 0) return;
-    const TileLayout& layout = test.ours_.layout();
-    first_.resize(test.parts.size());
-    for (std::size_t i = 0; i < first_.size(); ++i)
-        for (std::size_t l = 0; l < layout.levels(); ++l) {
-            const auto a = test.ours_.estimates(i, l), b = test.theirs_.estimates(i, l);
-            auto& tiles = first_[i].emplace_back(a.size());
-            // Far beyond the noise of the tile, so that missing the truth here costs nothing of the stated rate that
-            // counts.
-            const double p = test.level_ / (3 * double(layout.tiles(l)) * double(layout.levels()));
-            for (std::size_t t = 0; t < a.size(); ++t)
-                for (std::size_t c = 0; c < 3; ++c) {
-                    const Interval interval = welch_interval(a[t][c], b[t][c], p);
-                    tiles[t][c] = std::max(interval.high, -interval.low);
-                }
-        }
-}
 
 }  // namespace lightswitch::detail

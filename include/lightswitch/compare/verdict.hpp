@@ -5,6 +5,7 @@
 #include <lightswitch/compare/statistics.hpp>
 #include <lightswitch/compare/tiles.hpp>
 #include <lightswitch/film/image.hpp>
+#include <lightswitch/render/path_classes.hpp>
 
 #include <array>
 #include <cstdio>
@@ -52,10 +53,13 @@ struct Verdict {
     std::string reason;          ///< one sentence
     int first_wrong_length = 0;  ///< 0 when it is not known
     bool correlated_pixels = false;
+    PathClasses left_out;                       ///< paths that only one side makes, and which it left out for this comparison
+    PathClasses method_lacks, reference_lacks;  ///< paths that only the other side makes, and could not leave out
     std::vector<Part> parts;  ///< all lengths first, then one by one; empty when nothing could be compared
 
     double confidence = 0, tolerance = 0;
     double seconds = 0, reference_seconds = 0;  ///< spent rendering
+    double seconds_to_decide = 0;  ///< of an undecided one: what the whole run would probably have to take; 0 when not known
     double found_after =
         0;  ///< seconds from the beginning of the run until a difference was found; 0 when there is none
     std::uint64_t images = 0, reference_images = 0;    ///< independent ones
@@ -120,6 +124,7 @@ inline std::string percent_interval(const Verdict::Part& part, int channel) {
 /// Several lines: the answer with its reason, then one line per part.
 inline std::ostream& operator<<(std::ostream& out, const Verdict& v) {
     out << v.method << " against " << v.reference << ": " << name(v.answer) << ". " << v.reason << '\n';
+    if (v.left_out.any()) out << "  outside the comparison, because only one of them makes it: " << describe(v.left_out) << '\n';
     for (const Verdict::Part& part : v.parts) {
         const int channel = detail::surest_channel(part);
         out << "  " << name(part) << ": " << (part.disagrees ? "disagrees" : "no difference found") << ", bias "

@@ -13,13 +13,14 @@ namespace lightswitch {
 struct VerifyProgress {
     double seconds = 0;
     double fraction = 0;  ///< of the time that it may take, 0 to 1: it may well end before
+    double seconds_to_decide = 0;  ///< when everything will probably be decided, from the beginning; 0 when that is not known yet
     std::string method;   ///< that just made an image
     std::uint64_t images = 0;
 };
 
 /// How `verify` works; the defaults are right for most uses.
 struct VerifyOptions {
-    /// Of rendering, in all, but at least three images of each; it ends as soon as every question is decided.
+    /// On the clock, in all, but at least three images of each; it ends as soon as every question is decided.
     double seconds = 20;
     /// A method that agrees is said to disagree with a probability of at most 1 - confidence, if no lamp, or no
     /// sample of an image without a scene, is much brighter than what is known of (see `Estimator::brightest`).
@@ -30,7 +31,9 @@ struct VerifyOptions {
     double tolerance = 0.01;
     int path_lengths = 5;  ///< compared one by one; 0: only all together
     std::uint64_t seed = 0;
-    int images = 0;             ///< at most, per method; 0: as many as there is time for
+    /// At most, per method; 0: as many as there is time for. Of a consistent method, whose samples are doubled at every look, an
+    /// image counts as many as its samples are times those of the first.
+    int images = 0;
     int samples = 0;            ///< per pixel of each image; 0: chosen by the time that they take
     int threads = 0;            ///< 0: as many as the machine has
     std::stop_token stop = {};  ///< ends the run early, with a verdict on what there is

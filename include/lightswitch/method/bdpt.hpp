@@ -21,10 +21,13 @@ struct Strategy {
 struct Bdpt {
     static constexpr std::string_view name = "bdpt";
     static constexpr Kind kind = Kind::unbiased;
+    static constexpr PathClasses cannot_make{.mirrored_dirac_caustic = true};
+    static constexpr PathClasses can_leave_out{.dirac_light = true, .dirac_caustic = true, .mirrored = true};
 
     int max_depth = PathLength{}.max_depth;  ///< see `PathLength`
     int rr_depth = PathLength{}.rr_depth;    ///< of whole paths: each of the two that make one counts half as many
     std::optional<Strategy> only = {};  ///< this strategy alone; the weighted images of all strategies add up to the image
+    PathClasses left_out = {};          ///< paths that are not made
 
     struct State {};
     State start(auto&) const { return {}; }
@@ -32,16 +35,16 @@ struct Bdpt {
     void iterate(auto& frame, State&) const {
         if (max_depth == 0) return;
         const auto& scene = frame.scene();
-        const PathLength length{max_depth, rr_depth / 2};
+        const PathLimits limits{{max_depth, rr_depth / 2}, left_out};
         const double light_paths = double(frame.area());
         const auto count = [this](const Contribution& contribution, int s, int t) { return counted(contribution, s, t); };
         frame.pixels([&](const Ray& ray, auto& sampler, const PixelContext& pixel) {
             static thread_local std::vector<PathVertex> light_path;  // kept, so that it need not be allocated again
             light_path.clear();
             auto light_sampler = sampler.split();
-            splat_light_subpath(scene, light_sampler, pixel.splatter, length, light_paths, {}, count,
+            splat_light_subpath(scene, light_sampler, pixel.splatter, limits, light_paths, {}, count,
                                 [&](const PathVertex& y) { light_path.push_back(y); });
-            return gather_camera_subpath(scene, ray, sampler, light_path, length, light_paths, {}, count,
+            return gather_camera_subpath(scene, ray, sampler, light_path, limits, light_paths, {}, count,
                                          [](const PathVertex&, const Arrival&) { return Rgb(0); });
         });
     }

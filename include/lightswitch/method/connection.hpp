@@ -57,9 +57,10 @@ inline Contribution meet_environment(const auto& scene, const CameraSubpath& pat
 
 /// s = 1: a point of a light, chosen from the vertex of the camera path (next event estimation).
 [[gnu::always_inline]] inline Connection connect_to_light(const auto& scene, const PathVertex& z, const Arrival& at_z,
-                                                          float choice, const Vec2& place, const MergeWeights& merge_weights) {
+                                                          float choice, const Vec2& place, const MergeWeights& merge_weights,
+                                                          const PathClasses& left_out = {}) {
     const LightSample light = scene.sample_light(z.point, choice, place);
-    if (!(light.pdf.value > 0)) return {};
+    if (!(light.pdf.value > 0) || (light.dirac && left_out.dirac_light)) return {};
     const Turn at_camera = turn<Transport::radiance>(scene, z.point, at_z, light.wi);
     if (is_black(at_camera.value)) return {};
     const double cosine = std::abs(dot(z.point.normal, light.wi));
@@ -122,10 +123,10 @@ inline bool visible(const auto& scene, const Connection& connection) {
 
 /// Traces a path from a light and splats what the camera sees of it: `splatter` gets `count(contribution, s, t)`. Calls `visit(vertex)`
 /// at each vertex to which a camera path can connect.
-void splat_light_subpath(const auto& scene, auto& sampler, auto& splatter, const PathLength& length, double light_paths,
+void splat_light_subpath(const auto& scene, auto& sampler, auto& splatter, const PathLimits& limits, double light_paths,
                          const MergeWeights& merge_weights, const auto& count, const auto& visit) {
     const Camera& camera = scene.camera();
-    trace_light_subpath(scene, sampler, length, merge_weights, [&](const PathVertex& y) {
+    trace_light_subpath(scene, sampler, limits, merge_weights, [&](const PathVertex& y) {
         visit(y);
         const auto view = camera.view(y.point, camera.has_lens() ? sampler.next_2d() : Vec2(0.5f));
         if (!view) return;
@@ -140,7 +141,7 @@ void splat_light_subpath(const auto& scene, auto& sampler, auto& splatter, const
 /// Most connections carry little. Whether one is worth its ray is left to Russian roulette: one that would add 1 % to
 /// what the path has gathered is traced with probability 0.1, and counts ten times.
 Rgb gather_camera_subpath(const auto& scene, const Ray& ray, auto& sampler, std::span<const PathVertex> light_path,
-                          const PathLength& length, double light_paths, const MergeWeights& merge_weights, const auto& count,
+                          const PathLimits& limits, double light_paths, const MergeWeights& merge_weights, const auto& count,
                           const auto& at_vertex) {
     constexpr float worth = 0.1f;
     Rgb sum(0);
@@ -168,19 +169,22 @@ Rgb gather_camera_subpath(const auto& scene, const Ray& ray, auto& sampler, std:
             return sum;
         }
         add(meet_light(scene, path), 0, z.edges + 1);
-        if (z.edges == length.max_depth) return sum;
+        if (z.edges == limits.max_depth) return sum;
         const Vec2 direction = sampler.next_2d(), choices = sampler.next_2d(), on_light = sampler.next_2d();
         if (connectable(scene, z.point)) {
             // One number chooses the light and the lobe: they enter different terms of the sum.
             const Arrival at_z(z.point);
-            try_connection(connect_to_light(scene, z, at_z, choices.x, on_light, merge_weights), 1, z.edges + 1);
+            try_connection(connect_to_light(scene, z, at_z, choices.x, on_light, merge_weights, limits.left_out), 1,
+                           z.edges + 1);
             for (const PathVertex& y : light_path) {
-                if (length.max_depth >= 0 && y.edges + 1 + z.edges > length.max_depth) break;
+                if (limits.max_depth >= 0 && y.edges + 1 + z.edges > limits.max_depth) break;
                 try_connection(connect(scene, y, z, at_z, merge_weights), y.edges + 1, z.edges + 1);
             }
             sum += at_vertex(z, at_z);
+        } else if (limits.left_out.mirrored && z.edges == 1) {
+            return sum;
         }
-        if (!path.scatter(scene, direction, choices, length.rr_depth)) return sum;
+        if (!path.scatter(scene, direction, choices, limits.rr_depth)) return sum;
     }
 }
 

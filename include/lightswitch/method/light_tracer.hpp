@@ -12,6 +12,7 @@ namespace lightswitch {
 struct LightTracer {
     static constexpr std::string_view name = "light";
     static constexpr Kind kind = Kind::unbiased;
+    static constexpr PathClasses cannot_make{.mirrored_dirac_caustic = true, .mirrored = true};
 
     int max_depth = PathLength{}.max_depth;  ///< see `PathLength`
     int rr_depth = PathLength{}.rr_depth;
@@ -26,7 +27,7 @@ struct LightTracer {
         const std::uint64_t light_paths = frame.area();
         frame.paths(light_paths, [&](std::uint64_t, auto& sampler, auto& splatter) {
             const auto alone = [](const Contribution& contribution, int, int) { return contribution.value; };
-            splat_light_subpath(scene, sampler, splatter, {max_depth, rr_depth}, double(light_paths), {}, alone,
+            splat_light_subpath(scene, sampler, splatter, {{max_depth, rr_depth}}, double(light_paths), {}, alone,
                                 [](const PathVertex&) {});
         });
     }

@@ -25,6 +25,7 @@ namespace lightswitch {
 struct Mlt {
     static constexpr std::string_view name = "mlt";
     static constexpr Kind kind = Kind::unbiased;
+    static constexpr PathClasses cannot_make{.mirrored_dirac_caustic = true};
 
     int max_depth = PathLength{}.max_depth;  ///< see `PathLength`; there is no roulette
     int chains = 1024;                       ///< fewer for images of fewer than 16 pixels per chain

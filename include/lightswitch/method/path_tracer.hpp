@@ -12,6 +12,7 @@ namespace lightswitch {
 struct PathTracer {
     static constexpr std::string_view name = "path";
     static constexpr Kind kind = Kind::unbiased;
+    static constexpr PathClasses cannot_make{.dirac_light = true, .dirac_caustic = true, .mirrored_dirac_caustic = true};
 
     int max_depth = PathLength{}.max_depth;  ///< see `PathLength`
     int rr_depth = PathLength{}.rr_depth;

@@ -13,6 +13,7 @@ namespace lightswitch {
 struct PathTracerNee {
     static constexpr std::string_view name = "path-nee";
     static constexpr Kind kind = Kind::unbiased;
+    static constexpr PathClasses cannot_make{.dirac_caustic = true, .mirrored_dirac_caustic = true};
 
     int max_depth = PathLength{}.max_depth;  ///< see `PathLength`
     int rr_depth = PathLength{}.rr_depth;

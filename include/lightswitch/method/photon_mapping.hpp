@@ -53,7 +53,7 @@ struct PhotonMapping {
         state.paths.reset(light_paths);
         frame.paths(light_paths, [&](std::uint64_t path, auto& sampler, auto&) {
             state.paths.start(path);
-            trace_light_subpath(scene, sampler, {max_depth, rr_depth}, {}, [&](const PathVertex& y) {
+            trace_light_subpath(scene, sampler, {{max_depth, rr_depth}}, {}, [&](const PathVertex& y) {
                 state.paths.push(path, photon_at(y));
             });
         });

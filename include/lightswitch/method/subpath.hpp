@@ -9,9 +9,15 @@
 #include <lightswitch/bsdf/bsdf.hpp>
 #include <lightswitch/light/light.hpp>
 #include <lightswitch/method/roulette.hpp>
+#include <lightswitch/render/path_classes.hpp>
 #include <lightswitch/scene/camera.hpp>
 
 namespace lightswitch {
+
+/// Which paths are made.
+struct PathLimits : PathLength {
+    PathClasses left_out = {};
+};
 
 /// What a ratio of two densities counts in a weight.
 inline double heuristic(double ratio) { return ratio * ratio; }
@@ -176,6 +182,8 @@ public:
     /// Where the vertex before stands, and its normal on the side that the path came to.
     const Vec3& previous() const { return previous_; }
     const Vec3& previous_normal() const { return previous_normal_; }
+    /// Whether the path starts at a point or directional light.
+    bool from_dirac_light() const { return emission_.dirac; }
     /// What the path carries along its ray.
     Rgb carried() const { return start_ * beta_; }
 
@@ -200,14 +208,16 @@ inline bool connectable(const auto& scene, const SurfacePoint& at) {
 
 /// Traces a path from a light, calls `visit(vertex)` at each vertex to which something can be connected, and ends it when no path of
 /// the allowed length could come of it.
-void trace_light_subpath(const auto& scene, auto& sampler, const PathLength& length, const MergeWeights& merge_weights,
+void trace_light_subpath(const auto& scene, auto& sampler, const PathLimits& limits, const MergeWeights& merge_weights,
                          const auto& visit) {
     LightSubpath path(scene, sampler, merge_weights);
-    if (is_black(path.carried())) return;
-    while ((length.max_depth < 0 || path.vertex().edges + 2 <= length.max_depth) && path.advance(scene)) {
+    if (is_black(path.carried()) || (limits.left_out.dirac_light && path.from_dirac_light())) return;
+    const bool caustic = !(limits.left_out.dirac_caustic && path.from_dirac_light());
+    while ((limits.max_depth < 0 || path.vertex().edges + 2 <= limits.max_depth) && path.advance(scene)) {
         if (connectable(scene, path.vertex().point)) visit(path.vertex());
+        else if (!caustic && path.vertex().edges == 1) return;
         const Vec2 direction = sampler.next_2d(), choices = sampler.next_2d();
-        if (!path.scatter(scene, direction, choices, length.rr_depth)) return;
+        if (!path.scatter(scene, direction, choices, limits.rr_depth)) return;
     }
 }
 

@@ -43,7 +43,7 @@ struct Vcm {
     void iterate(auto& frame, State& state) const {
         if (max_depth == 0) return;
         const auto& scene = frame.scene();
-        const PathLength length{max_depth, rr_depth / 2};
+        const PathLimits limits{{max_depth, rr_depth / 2}};
         const std::uint64_t light_paths = frame.area();
         const double n = double(light_paths);
         const float r = radius.at(frame.iteration(), state.footprint);
@@ -53,7 +53,7 @@ struct Vcm {
         state.paths.reset(light_paths);
         frame.paths(light_paths, [&](std::uint64_t path, auto& sampler, auto& splatter) {
             state.paths.start(path);
-            splat_light_subpath(scene, sampler, splatter, length, n, weights, count,
+            splat_light_subpath(scene, sampler, splatter, limits, n, weights, count,
                                 [&](const PathVertex& y) { state.paths.push(path, y); });
         });
         if (frame.stopped()) return;
@@ -72,7 +72,7 @@ struct Vcm {
                 });
                 return sum;
             };
-            return gather_camera_subpath(scene, ray, sampler, state.paths.of(pixel.index), length, n, weights, count,
+            return gather_camera_subpath(scene, ray, sampler, state.paths.of(pixel.index), limits, n, weights, count,
                                          merge_around);
         });
     }

@@ -4,6 +4,7 @@
 
 #include <lightswitch/core/math.hpp>
 #include <lightswitch/core/sampler.hpp>
+#include <lightswitch/render/path_classes.hpp>
 #include <lightswitch/scene/ray.hpp>
 
 #include <concepts>

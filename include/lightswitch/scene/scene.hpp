@@ -61,6 +61,13 @@ public:
         });
     }
 
+    /// Whether the scene has a material that is a mirror or clear glass: one whose lobes are all Dirac distributions.
+    bool has_specular() const {
+        return [&]<std::size_t... I>(std::index_sequence<I...>) {
+            return ((B::specular && !std::get<I>(data_.bsdfs).empty()) || ...);
+        }(std::index_sequence_for<B...>{});
+    }
+
     // --- lights
 
     /// Radiance that the surface at `point` emits along `direction` (unit, away from the surface).

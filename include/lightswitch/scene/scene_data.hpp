@@ -34,6 +34,9 @@ struct Emitter {
     Vec3 vector_area{0};   ///< of a surface: sum of normal * area (render space)
     float area = 0;        ///< of a surface
     std::size_t first_light = 0, light_count = 0;  ///< numbers of the lights that belong to it
+
+    /// Whether no ray can meet it by chance.
+    bool dirac() const { return kind == Kind::directional || kind == Kind::point; }
 };
 
 /// What a scene is made of, in numbers.
