@@ -1,6 +1,6 @@
 #include "program.hpp"
-#include "report.hpp"
 
+#include <lightswitch/compare/comparison_report.hpp>
 #include <lightswitch/compare/difference.hpp>
 #include <lightswitch/compare/false_color.hpp>
 #include <lightswitch/compare/metrics.hpp>
@@ -40,7 +40,7 @@ Extremes find_extremes(const Image& difference) {
 
 void line(std::string_view label, const std::string& text) { fmt::print("{:<12}{}\n", label, text); }
 
-void print_comparison(const NamedImage& image, const NamedImage& reference, const Image& difference) {
+void print_comparison(const ComparedImage& image, const ComparedImage& reference, const Image& difference) {
     const Image &a = image.image, &b = reference.image;
     const DVec3 mean_a = a.mean(), mean_b = b.mean();
     const Extremes extremes = find_extremes(difference);
@@ -92,10 +92,10 @@ int compare(const CompareOptions& options) {
     if (options.images.size() < (options.reference.empty() ? 2u : 1u))
         throw Error(options.reference.empty() ? "compare: name two images" : "compare: name an image");
     check_outputs(options);
-    std::vector<NamedImage> images;
+    std::vector<ComparedImage> images;
     for (const auto& path : options.images) images.push_back({path.string(), load_image(path)});
     if (!options.reference.empty()) images.push_back({options.reference.string(), load_image(options.reference)});
-    const NamedImage& reference = images.back();
+    const ComparedImage& reference = images.back();
 
     std::vector<Image> differences;  // all of them before anything is printed: one may be refused
     for (std::size_t i = 0; i + 1 < images.size(); ++i)

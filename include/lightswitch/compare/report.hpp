@@ -72,6 +72,8 @@ struct Report {
     std::optional<std::size_t> reference{};  ///< index of the image that the others are compared with at first
     std::vector<ReportMap> maps{};
     std::vector<ReportCurve> curves{};
+    std::string error_name = "Error";         ///< what the curves show
+    std::optional<double> reference_noise{};  ///< drawn as a level beneath the curves: the error that no image can go below
     std::vector<ReportHistogram> histograms{};
     std::vector<ReportTable> tables{};
 };
@@ -148,6 +150,8 @@ inline std::string report_json(const Report& report, KeptBits kept) {
                           return "{\"name\":" + json_text(curve.name) +
                                  ",\"points\":" + json_array(curve.points, point) + "}";
                       }) +
+           ",\"errorName\":" + json_text(report.error_name) + ",\"noise\":" +
+           (report.reference_noise ? json_number(*report.reference_noise) : "null") +
            ",\"histograms\":" + json_array(report.histograms, report_histogram) + "}";
 }
 

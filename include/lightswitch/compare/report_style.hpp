@@ -128,6 +128,7 @@ svg .axis { stroke: var(--muted); fill: none; }
 svg .grid { stroke: var(--line); }
 svg .curve { fill: none; stroke-width: 2; stroke-linejoin: round; }
 svg .ideal { fill: none; stroke-width: 1.25; stroke-dasharray: 5 4; opacity: .8; }
+svg .level { stroke: var(--muted); stroke-width: 1.5; stroke-dasharray: 2 3; }
 svg .bin { fill: var(--s0); }
 svg .expected { stroke: var(--s1); stroke-width: 2; stroke-dasharray: 6 4; }
 .error { border: 1px solid var(--s1); border-radius: 6px; padding: 10px 14px; background: var(--panel); }
