@@ -76,7 +76,8 @@ private:
             if (!next) continue;
             const ls::Ray second = hit->spawn(basis.to_world(next->wi));
             const auto lamp = scene.intersect(second);
-            sum += next->weight * (lamp ? scene.emitted(*lamp, -second.direction) : scene.environment(second.direction));
+            sum +=
+                next->weight * (lamp ? scene.emitted(*lamp, -second.direction) : scene.environment(second.direction));
         }
         return scene.emitted(*hit, -ray.direction) + sum / static_cast<float>(rays);
     }
@@ -96,7 +97,9 @@ int main(int argc, char** argv) try {
     for (const std::string& name : names) {
         Any method = ls::method_by_name<Any>(name);
         ls::set_path_length(method, length);
-        const auto render = [&](const auto& m) { return ls::render_measured(scene, m, reference, {.seconds = seconds}); };
+        const auto render = [&](const auto& m) {
+            return ls::render_measured(scene, m, reference, {.seconds = seconds});
+        };
         images.push_back(std::visit(render, method));
     }
     ls::save_report("own-methods.html", ls::comparison_report(images, 0));

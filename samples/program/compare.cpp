@@ -60,7 +60,14 @@ void print_comparison(const ComparedImage& image, const ComparedImage& reference
     if (extremes.not_finite > 0) line("not finite", fmt::format("{} pixels of A - B", extremes.not_finite));
 }
 
-void write_difference(const CompareOptions& options, const Image& signed_difference) {
+/// What the first difference is, for the picture of it.
+std::string caption(const ComparedImage& image, const ComparedImage& reference, bool absolute) {
+    const std::string difference = fmt::format("{} - {}", std::filesystem::path(image.name).filename().string(),
+                                               std::filesystem::path(reference.name).filename().string());
+    return fmt::format("{}, W/(m^2 sr)", absolute ? "|" + difference + "|" : difference);
+}
+
+void write_difference(const CompareOptions& options, const Image& signed_difference, const std::string& caption) {
     Image shown = signed_difference;
     if (options.absolute)
         for (Rgb& p : shown.pixels()) p = glm::abs(p);
@@ -72,7 +79,7 @@ void write_difference(const CompareOptions& options, const Image& signed_differe
         using Map = FalseColorOptions::Map;
         save(output, false_color(shown, {.map = options.absolute ? Map::sequential : Map::diverging,
                                          .scale = options.scale,
-                                         .caption = options.absolute ? "|A - B|" : "A - B"}));
+                                         .caption = caption}));
     }
 }
 
@@ -104,7 +111,7 @@ int compare(const CompareOptions& options) {
         if (i > 0) fmt::print("\n");
         print_comparison(images[i], reference, differences[i]);
     }
-    write_difference(options, differences.front());
+    write_difference(options, differences.front(), caption(images.front(), reference, options.absolute));
     if (!options.report.empty()) save_report(options.report, comparison_report(images, images.size() - 1));
     return success;
 }

@@ -135,3 +135,17 @@ TEST_CASE("compare: the page's curves belong to one method each, and know the se
     CHECK(curves.find(",1,") < curves.find(",16,"));
     CHECK(curves.find("[0,") == std::string::npos);  // seconds are known
 }
+
+TEST_CASE("compare: the picture of a difference names the files") {
+    const Workspace workspace;
+    lightswitch::save(workspace / "a.pfm", image(20, 10, 1));
+    lightswitch::save(workspace / "a-name-that-is-longer.pfm", image(20, 10, 1));
+    lightswitch::save(workspace / "b.pfm", image(20, 10, 1.5f));
+    const auto width = [&](const char* first) {
+        CHECK(run(workspace, {"compare", first, "b.pfm", "-o", "d.png"}).status == 0);
+        const std::string png = read_text(workspace / "d.png");
+        const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(png.at(at)); };
+        return byte(18) << 8 | byte(19);  // of the header
+    };
+    CHECK(width("a-name-that-is-longer.pfm") - width("a.pfm") == 20 * 6);  // letters of 6 dots
+}

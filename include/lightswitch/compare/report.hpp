@@ -37,7 +37,7 @@ struct ReportMap {
     std::string name;
     Image values;
     bool is_signed = false;  ///< shown from -scale to scale, otherwise from 0
-    double scale = 0;        ///< the value at the end of the colour map; 0 takes the 99th percentile of the magnitudes
+    double scale = 0;        ///< the value at the end of the colour map; 0: the 99th percentile of the magnitudes, rounded up
     std::string legend{};    ///< what the numbers are, with their unit
 };
 
