@@ -96,14 +96,34 @@ TEST_CASE("comparison: the level at which curves end is the noise of the referen
     const std::vector<ReportCurve> both{curve_against(1, rough, 0.1), curve_against(1, rough)};
     REQUIRE(detail::level_of(both[0]));
     CHECK(*detail::level_of(both[0]) > 1.5 * noise);
-    CHECK(detail::reference_noise(both) == level);
-    CHECK(detail::reference_noise(std::vector{both[1], both[0]}) == level);
+    CHECK(detail::lowest_level(both) == level);
+    CHECK(detail::lowest_level(std::vector{both[1], both[0]}) == level);
 
-    CHECK(!detail::reference_noise({}));
+    CHECK(!detail::lowest_level({}));
     CHECK(!detail::level_of({"two points", {{1, 1, 1}, {1, 100, 1}}}));
     CHECK(!detail::level_of({"near", {{1, 1, 1}, {1, 2, 1}, {1, 3, 1}}}));
     const double nan = std::nan("");
     CHECK(!detail::level_of({"none", {{1, 1, nan}, {1, 10, 0}, {1, 100, 1}, {1, 0, 1}}}));
+}
+
+// As above: the noise within 3 %.
+TEST_CASE("comparison: an image by the reference's method with another seed tells the reference's noise") {
+    const auto metadata = [](const char* seed) {
+        return Image::Metadata{{"method", "a"}, {"kind", "unbiased"}, {"sampling", "sobol"}, {"seed", seed}};
+    };
+    const auto noise_of = [](std::vector<ComparedImage> images) { return comparison_report(images, 0).reference_noise; };
+    const ComparedImage truth{"truth", noisy(1, 256, 1, metadata("1"))}, other{"other", noisy(1, 64, 2, metadata("2"))};
+    ComparedImage few{"few", noisy(1, 4, 3, metadata("3"))};
+    for (const auto& images : {std::vector{truth, other}, std::vector{truth, few, other}, std::vector{truth, other, few}}) {
+        const auto noise = noise_of(images);
+        REQUIRE(noise);
+        CHECK(*noise == doctest::Approx(1.0 / 16).epsilon(0.03));
+    }
+    for (const char* key : {"seed", "method", "sampling"}) {
+        ComparedImage changed = other;
+        changed.image.metadata[key] = key == std::string("seed") ? "1" : "x";
+        CHECK(!noise_of({truth, changed}));
+    }
 }
 
 TEST_CASE("comparison: a render is measured on its way") {
@@ -142,6 +162,7 @@ TEST_CASE("verdicts: one page for all of a run, each thing explained once") {
     CHECK(report.images.size() == 3);
     CHECK(report.reference == 0);
     CHECK(report.curves.size() == 2);
+    CHECK(report.reference_noise == detail::lowest_level(report.curves));
     CHECK(report.histograms.size() == 2);
     REQUIRE(report.tables.size() == 3);
     CHECK(report.tables[0].rows.size() == 2);

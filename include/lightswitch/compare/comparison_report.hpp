@@ -131,10 +131,10 @@ inline std::vector<ReportCurve> comparison_curves(std::span<const ComparedImage>
     return curves;
 }
 
-/// The root of the relMSE that is left on a curve when its samples are without number: of e^2 = a / samples + b, fitted
-/// to the curve's errors by least squares of their ratios, the root of b. That is the reference's own noise, and the
-/// method's bias if it has one. Nothing when three points over a factor of four do not show it, as a tenth of the
-/// smallest e^2 at least.
+/// The root of the relMSE that is left on a curve when its samples are without number: of e^2 = a / samples + b, fitted to
+/// the curve's errors by least squares of their ratios, the root of b. That is the reference's own noise, and the method's
+/// bias if it has one. Only for independent samples, as others gain more than that. Nothing when three points over a
+/// factor of four do not show it, as a tenth of the smallest e^2 at least.
 inline std::optional<double> level_of(const ReportCurve& curve) {
     double uu = 0, uv = 0, vv = 0, u_sum = 0, v_sum = 0, count = 0;
     double fewest = std::numeric_limits<double>::infinity(), most = 0, least = fewest;
@@ -150,12 +150,37 @@ inline std::optional<double> level_of(const ReportCurve& curve) {
     return std::sqrt(std::min(b, least));
 }
 
-/// The lowest level of all curves: the reference is no noisier than that.
-inline std::optional<double> reference_noise(std::span<const ReportCurve> curves) {
+/// The lowest level of all curves: the others are raised by bias.
+inline std::optional<double> lowest_level(std::span<const ReportCurve> curves) {
     std::optional<double> lowest;
     for (const ReportCurve& curve : curves)
         if (const auto level = level_of(curve); level && (!lowest || *level < *lowest)) lowest = level;
     return lowest;
+}
+
+/// The root of the relMSE of the reference itself, as far as the images tell. One that differs from it in nothing but the
+/// seed and the number of samples, n instead of N, has N / n times its variance: of the relMSE between the two,
+/// n / (n + N) is the reference's. Else, for independent samples, what is left on the curves.
+inline std::optional<double> reference_noise(std::span<const ComparedImage> images, std::size_t reference,
+                                             std::span<const ReportCurve> curves) {
+    const Image& truth = images[reference].image;
+    const double total = metadata_number(truth, "samples");
+    double most = 0;
+    std::optional<double> noise;
+    bool independent = true;
+    for (std::size_t i = 0; i < images.size(); ++i) {
+        if (i == reference) continue;
+        const Image& image = images[i].image;
+        independent = independent && metadata_text(image, "sampling") == name(Sampling::independent);
+        const auto same = [&](const char* key) { return metadata_text(image, key) == metadata_text(truth, key); };
+        const double samples = metadata_number(image, "samples");
+        if (!same("method") || !same("sampling") || same("seed") ||
+            metadata_text(truth, "kind") != name(Kind::unbiased) || !(total > 0 && samples > most))
+            continue;
+        most = samples;
+        noise = std::sqrt(relmse(image, truth) * samples / (samples + total));
+    }
+    return noise || !independent ? noise : lowest_level(curves);
 }
 
 inline constexpr const char* error_of_curves = "Error: root of relMSE";
@@ -197,7 +222,7 @@ inline Report comparison_report(std::span<const ComparedImage> images, std::size
     for (const ComparedImage& one : images) report.images.push_back({.name = one.name, .image = one.image});
     report.curves = detail::comparison_curves(images, reference);
     report.error_name = detail::error_of_curves;
-    report.reference_noise = detail::reference_noise(report.curves);
+    report.reference_noise = detail::reference_noise(images, reference, report.curves);
     detail::add_metrics(report, images, reference);
     return report;
 }

@@ -73,7 +73,7 @@ struct Report {
     std::vector<ReportMap> maps{};
     std::vector<ReportCurve> curves{};
     std::string error_name = "Error";         ///< what the curves show
-    std::optional<double> reference_noise{};  ///< drawn as a level beneath the curves: the error that no image can go below
+    std::optional<double> reference_noise{};  ///< the part of the errors that is its own, drawn as a level
     std::vector<ReportHistogram> histograms{};
     std::vector<ReportTable> tables{};
 };

@@ -93,7 +93,7 @@ function errorChart(title, xTitle, column, width) {
     }
   }
   const list = element('ul', {class: 'keys'}, ...curves.map(c => key(c.i, c.name)), lineKey('ideal', '1/\u221aN'),
-                       ...level.map(v => lineKey('level', `noise of the reference: at most ${short(v)}`)));
+                       ...level.map(v => lineKey('level', `noise of the reference: about ${short(v)}`)));
   return element('figure', {class: 'panel'}, element('figcaption', {}, title), list, root);
 }
 

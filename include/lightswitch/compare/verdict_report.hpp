@@ -77,6 +77,7 @@ inline Report verdict_report(std::string title, std::span<const Verdict> verdict
     }
     Report report = comparison_report(images, 0);
     report.title = std::move(title);
+    report.reference_noise = detail::lowest_level(report.curves);  // verify adds up independent images
     report.tables.insert(report.tables.begin(), {detail::verdict_table(verdicts), detail::parts_table(verdicts)});
     for (const Verdict& v : verdicts) {
         const char* with = v.answer == Verdict::Answer::undecided ? " against " : " with ";
