@@ -166,9 +166,9 @@ TEST_CASE("verdicts: one page for all of a run, each thing explained once") {
     CHECK(report.histograms.size() == 2);
     REQUIRE(report.tables.size() == 3);
     CHECK(report.tables[0].rows.size() == 2);
-    CHECK(report.tables[1].rows.size() == verdicts[0].parts.size() + verdicts[1].parts.size());
-    CHECK(report.tables[1].rows.front().front() == "path-nee");
-    CHECK(report.tables[1].rows.back().front() == "path");
+    CHECK(report.tables[2].rows.size() == verdicts[0].parts.size() + verdicts[1].parts.size());
+    CHECK(report.tables[2].rows.front().front() == "path-nee");
+    CHECK(report.tables[2].rows.back().front() == "path");
     CHECK(report.summary.find("\n\npath ") != std::string::npos);
     CHECK(report_html(report).find("By path length") != std::string::npos);
     CHECK(verdict_report("one", verdicts[0]).images.size() == 2);

@@ -114,6 +114,7 @@ th, td { text-align: left; padding: 5px 22px 5px 0; border-bottom: 1px solid var
 th { color: var(--muted); font-weight: 600; }
 th[scope="row"] { color: var(--ink); font-weight: 400; }
 .number { text-align: right; }
+#tables td:first-child { white-space: nowrap; }
 
 #charts {
   display: grid; grid-template-columns: repeat(auto-fit, minmax(min(420px, 100%), 1fr)); gap: 16px; align-items: start;

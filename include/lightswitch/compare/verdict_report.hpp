@@ -78,7 +78,8 @@ inline Report verdict_report(std::string title, std::span<const Verdict> verdict
     Report report = comparison_report(images, 0);
     report.title = std::move(title);
     report.reference_noise = detail::lowest_level(report.curves);  // verify adds up independent images
-    report.tables.insert(report.tables.begin(), {detail::verdict_table(verdicts), detail::parts_table(verdicts)});
+    report.tables.insert(report.tables.begin(), detail::verdict_table(verdicts));
+    report.tables.push_back(detail::parts_table(verdicts));  // the longest
     for (const Verdict& v : verdicts) {
         const char* with = v.answer == Verdict::Answer::undecided ? " against " : " with ";
         report.summary += (report.summary.empty() ? "" : "\n\n") + v.method + " " + std::string(name(v.answer)) + with +
