@@ -99,6 +99,9 @@ TEST_CASE("comparison: the level at which curves end is the noise of the referen
     CHECK(detail::lowest_level(both) == level);
     CHECK(detail::lowest_level(std::vector{both[1], both[0]}) == level);
 
+    // Two points have no level, but show that the other's is not the reference's noise.
+    const ReportCurve below{"below", {{1, 1, 2 * noise}, {1, 2, 1.2 * noise}}};
+    CHECK(!detail::lowest_level(std::vector{both[0], below}));
     CHECK(!detail::lowest_level({}));
     CHECK(!detail::level_of({"two points", {{1, 1, 1}, {1, 100, 1}}}));
     CHECK(!detail::level_of({"near", {{1, 1, 1}, {1, 2, 1}, {1, 3, 1}}}));

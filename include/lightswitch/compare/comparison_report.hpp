@@ -150,11 +150,15 @@ inline std::optional<double> level_of(const ReportCurve& curve) {
     return std::sqrt(std::min(b, least));
 }
 
-/// The lowest level of all curves: the others are raised by bias.
+/// The lowest level of all curves: the others are raised by bias. So is that one if a point of any curve is below it, and
+/// then nothing is known.
 inline std::optional<double> lowest_level(std::span<const ReportCurve> curves) {
     std::optional<double> lowest;
     for (const ReportCurve& curve : curves)
         if (const auto level = level_of(curve); level && (!lowest || *level < *lowest)) lowest = level;
+    for (const ReportCurve& curve : curves)
+        for (const ReportCurve::Point& p : curve.points)
+            if (lowest && p.error < *lowest) lowest.reset();
     return lowest;
 }
 
