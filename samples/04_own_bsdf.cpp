@@ -34,7 +34,6 @@ struct Dust {
 private:
     static constexpr ls::SolidAnglePdf pdf{0.5f * ls::inv_pi};
 };
-static_assert(ls::Bsdf<Dust>);  // where a member is missing or wrong, this line names it
 
 int main() try {
     // Two spheres, as bright as each other in the middle, lit from behind the camera: Lambert's on the left.

@@ -1,6 +1,6 @@
 #include "program.hpp"
-#include "report.hpp"
 
+#include <lightswitch/compare/comparison_report.hpp>
 #include <lightswitch/compare/difference.hpp>
 #include <lightswitch/compare/false_color.hpp>
 #include <lightswitch/compare/metrics.hpp>
@@ -40,7 +40,7 @@ Extremes find_extremes(const Image& difference) {
 
 void line(std::string_view label, const std::string& text) { fmt::print("{:<12}{}\n", label, text); }
 
-void print_comparison(const NamedImage& image, const NamedImage& reference, const Image& difference) {
+void print_comparison(const ComparedImage& image, const ComparedImage& reference, const Image& difference) {
     const Image &a = image.image, &b = reference.image;
     const DVec3 mean_a = a.mean(), mean_b = b.mean();
     const Extremes extremes = find_extremes(difference);
@@ -60,7 +60,14 @@ void print_comparison(const NamedImage& image, const NamedImage& reference, cons
     if (extremes.not_finite > 0) line("not finite", fmt::format("{} pixels of A - B", extremes.not_finite));
 }
 
-void write_difference(const CompareOptions& options, const Image& signed_difference) {
+/// What the first difference is, for the picture of it.
+std::string caption(const ComparedImage& image, const ComparedImage& reference, bool absolute) {
+    const std::string difference = fmt::format("{} - {}", std::filesystem::path(image.name).filename().string(),
+                                               std::filesystem::path(reference.name).filename().string());
+    return fmt::format("{}, W/(m^2 sr)", absolute ? "|" + difference + "|" : difference);
+}
+
+void write_difference(const CompareOptions& options, const Image& signed_difference, const std::string& caption) {
     Image shown = signed_difference;
     if (options.absolute)
         for (Rgb& p : shown.pixels()) p = glm::abs(p);
@@ -72,7 +79,7 @@ void write_difference(const CompareOptions& options, const Image& signed_differe
         using Map = FalseColorOptions::Map;
         save(output, false_color(shown, {.map = options.absolute ? Map::sequential : Map::diverging,
                                          .scale = options.scale,
-                                         .caption = options.absolute ? "|A - B|" : "A - B"}));
+                                         .caption = caption}));
     }
 }
 
@@ -92,10 +99,10 @@ int compare(const CompareOptions& options) {
     if (options.images.size() < (options.reference.empty() ? 2u : 1u))
         throw Error(options.reference.empty() ? "compare: name two images" : "compare: name an image");
     check_outputs(options);
-    std::vector<NamedImage> images;
+    std::vector<ComparedImage> images;
     for (const auto& path : options.images) images.push_back({path.string(), load_image(path)});
     if (!options.reference.empty()) images.push_back({options.reference.string(), load_image(options.reference)});
-    const NamedImage& reference = images.back();
+    const ComparedImage& reference = images.back();
 
     std::vector<Image> differences;  // all of them before anything is printed: one may be refused
     for (std::size_t i = 0; i + 1 < images.size(); ++i)
@@ -104,7 +111,7 @@ int compare(const CompareOptions& options) {
         if (i > 0) fmt::print("\n");
         print_comparison(images[i], reference, differences[i]);
     }
-    write_difference(options, differences.front());
+    write_difference(options, differences.front(), caption(images.front(), reference, options.absolute));
     if (!options.report.empty()) save_report(options.report, comparison_report(images, images.size() - 1));
     return success;
 }

@@ -100,6 +100,14 @@ int run_command(int argc, char** argv) {
     add_verify(verify_command, verify_options);
     add_strategies(strategies_command, strategies_options);
     add_scene_options(info_command, info_options);
+    methods_command.footer(
+        "Examples:\n"
+        "  lightswitch methods\n"
+        "  lightswitch render cornell-box --method bdpt --output box.png");
+    info_command.footer(
+        "Examples:\n"
+        "  lightswitch info cornell-box\n"
+        "  lightswitch info room.xml --define lamp=12 --size 640x360");
     for (CLI::App* command : app.get_subcommands({})) command->allow_extras();
 
     const std::string_view first = argc > 1 ? argv[1] : "";

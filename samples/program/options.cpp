@@ -165,7 +165,7 @@ void add_compare(CLI::App& app, CompareOptions& options) {
     app.add_flag("--absolute", options.absolute, "write the magnitude of the difference instead");
     add_value(
         app, "--scale", "S", [&](const std::string& text) { options.scale = parse_float("--scale", text, 0, true); },
-        "difference at the ends of the colour map (default: the 99th\npercentile)");
+        "difference at the ends of the colour map (default: the 99th\npercentile, rounded up)");
     app.footer(
         "Prints the means, their ratio, MSE, RMSE, relMSE (squared error over squared reference + 0.01), MAPE, SMAPE\n"
         "and the largest difference. Images of different scenes, cameras or sizes are refused.\n\n"

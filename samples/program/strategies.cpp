@@ -21,6 +21,10 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int gap = 8;  // pixels between tiles
 
+/// Of the texts, for tiles of that width.
+int letter_size(int width) { return std::max(1, width / 64); }
+int line_height(int width) { return (glyph_height + 4) * letter_size(width); }
+
 struct StrategyImage {
     Strategy strategy;
     Image image;
@@ -51,9 +55,9 @@ void check_outputs(const StrategiesCommand& command, const std::vector<StrategyI
     if (!command.directory.empty())
         for (const StrategyImage& one : all) check_writable(file_of(one, command.directory));
     if (command.outputs.empty()) return;
-    const long long columns = command.max_depth + 1, rows = command.max_depth, caption = 64;
+    const long long columns = command.max_depth + 1, rows = command.max_depth, line = line_height(size.width);
     try {
-        Image::check_size(columns * (size.width + gap) + gap, rows * (size.height + caption + gap) + gap);
+        Image::check_size(columns * (size.width + gap) + gap, rows * (size.height + line + gap) + gap + 2 * line);
     } catch (const Error& error) {
         throw Error(fmt::format("the picture would be too large ({}); a smaller --size or --max-depth makes it smaller",
                                 error.what()));
@@ -75,8 +79,8 @@ float common_exposure(const std::vector<StrategyImage>& all) {
     return -std::log2(*at);
 }
 
-/// A row for every path length, each centred.
-Image pyramid(const std::vector<StrategyImage>& all, float exposure) {
+/// A row for every path length, each centred, and below them what they are.
+Image pyramid(const std::vector<StrategyImage>& all, float exposure, int samples) {
     std::vector<Image> rows;
     for (std::size_t begin = 0; begin < all.size();) {
         std::vector<Tile> tiles;
@@ -88,13 +92,23 @@ Image pyramid(const std::vector<StrategyImage>& all, float exposure) {
         }
         rows.push_back(montage(tiles, {.columns = static_cast<int>(tiles.size()),
                                        .gap = gap,
-                                       .letter_size = std::max(1, tiles[0].image.width() / 64)}));
+                                       .letter_size = letter_size(tiles[0].image.width())}));
     }
     const int pitch = rows[0].height() - gap;  // neighbours share the gap between them
-    Image sheet(rows.back().width(), pitch * static_cast<int>(rows.size()) + gap);
+    const std::string texts[] = {"s vertices from a light, t from the camera; a row per path length",
+                                 fmt::format("{}, exposure {:+.2f} stops, {} samples per pixel",
+                                             all[0].strategy.weighted ? "weighted" : "unweighted", exposure, samples)};
+    const int dot = letter_size(all[0].image.width()), line = line_height(all[0].image.width());
+    int width = rows.back().width(), top = pitch * static_cast<int>(rows.size()) + gap;
+    for (const std::string& text : texts) width = std::max(width, text_width(text, dot) + 2 * gap);
+    Image sheet(width, top + 2 * line);
     fill_rectangle(sheet, 0, 0, sheet.width(), sheet.height(), Rgb(1));
     for (std::size_t i = 0; i < rows.size(); ++i)
-        paste(sheet, (sheet.width() - rows[i].width()) / 2, pitch * static_cast<int>(i), rows[i]);
+        paste(sheet, (width - rows[i].width()) / 2, pitch * static_cast<int>(i), rows[i]);
+    for (const std::string& text : texts) {
+        draw_text(sheet, (width - text_width(text, dot)) / 2, top, text, srgb(20, 20, 20), dot);
+        top += line;
+    }
     return sheet;
 }
 
@@ -166,7 +180,7 @@ int strategies(const StrategiesCommand& command) {
         written += (written.empty() ? "; wrote " : ", ") + file.string();
     };
     if (!command.outputs.empty()) {
-        const Image sheet = pyramid(all, exposure);
+        const Image sheet = pyramid(all, exposure, command.samples);
         for (const auto& output : command.outputs) keep(output, sheet);
     }
     if (!command.directory.empty()) {

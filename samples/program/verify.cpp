@@ -4,10 +4,10 @@
 #include "method_notes.hpp"
 #include "method_options.hpp"
 #include "progress.hpp"
-#include "report.hpp"
 #include "run.hpp"
 #include "text.hpp"
 
+#include <lightswitch/compare/verdict_report.hpp>
 #include <lightswitch/compare/verify.hpp>
 #include <lightswitch/film/file.hpp>
 #include <lightswitch/film/image_io.hpp>
@@ -194,7 +194,7 @@ Contest make_contest(const VerifyCommand& command, const std::stop_token& stop) 
     contest.reference = *first;
     contest.methods.erase(first);
     if (from_files) {  // the lamps are known, and perhaps how many samples their light is averaged over
-        const double samples = samples_of(images[0]);
+        const double samples = metadata_number(images[0], "samples");
         if (samples >= 1) contest.methods[0].brightest = contest.reference->brightest / static_cast<float>(samples);
     }
     return contest;

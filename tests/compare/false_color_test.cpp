@@ -3,6 +3,8 @@
 #include <doctest/doctest.h>
 
 #include <limits>
+#include <utility>
+#include <vector>
 
 using namespace lightswitch;
 
@@ -73,6 +75,33 @@ TEST_CASE("false colour: the scale is a percentile of the finite magnitudes") {
     sparse(7, 0) = Rgb(0, 3, 0);
     CHECK(detail::magnitude_percentile(sparse, 99) == 3);  // the percentile itself is 0
     CHECK(detail::magnitude_percentile(Image(3, 3), 99) == 1);
+}
+
+TEST_CASE("false colour: a scale that is chosen is round, and so are its half and quarters") {
+    for (const auto& [value, round] : std::vector<std::pair<float, float>>{
+             {1, 1}, {1.01f, 1.5f}, {0.0837f, 0.1f}, {0.0237f, 0.03f}, {700, 800}, {99, 100}, {5e-7f, 5e-7f}, {6.1e20f, 8e20f}})
+        CHECK(double(detail::round_up(value)) == doctest::Approx(double(round)).epsilon(1e-6));
+    Image image(2, 1);
+    image(0, 0) = Rgb(0.0837f);
+    image(1, 0) = Rgb(-0.05f);
+    const Image colors = false_color(image, {.percentile = 100, .legend = false});
+    CHECK(max_component(glm::abs(colors(0, 0) - color_of(0.837f, diverging))) < 1e-6f);
+    CHECK(max_component(glm::abs(colors(1, 0) - color_of(-0.5f, diverging))) < 1e-6f);
+}
+
+TEST_CASE("false colour: a colour bar by itself is the legend of a picture with that scale") {
+    const FalseColorOptions options{.scale = 2, .caption = "what", .letter_size = 2};
+    const Image bar = color_bar(300, options), with = false_color(Image(300, 5), options);
+    REQUIRE(bar.width() == with.width());
+    REQUIRE(bar.height() == with.height() - 5);
+    bool same = true;
+    for (int y = 0; y < bar.height(); ++y)
+        for (int x = 0; x < bar.width(); ++x) same = same && bar(x, y) == with(x, y + 5);
+    CHECK(same);
+    CHECK(color_bar(1, {.scale = 1}).width() > 30);  // room for the numbers
+    CHECK_THROWS_WITH_AS(color_bar(100, {}), "a colour bar by itself needs a scale", Error);
+    CHECK_THROWS_AS(color_bar(0, {.scale = 1}), Error);
+    CHECK_THROWS_AS(color_bar(100, {.scale = 1, .letter_size = 65}), Error);
 }
 
 TEST_CASE("false colour: the legend shows the map, has its numbers, and leaves the picture alone") {

@@ -114,3 +114,38 @@ TEST_CASE("compare takes any number of images, and makes a page of them") {
     // Without --reference the last one is it.
     CHECK(run(workspace, {"compare", "a.pfm", "b.pfm", "c.pfm"}).out == ended.out);
 }
+
+TEST_CASE("compare: the page's curves belong to one method each, and know the seconds") {
+    if (!lightswitch::detail::has_exr) return;
+    const Workspace workspace;
+    const auto render = [&](const char* method, const char* spp, const char* file) {
+        CHECK(run(workspace, {"render", "furnace", "--size", "8x8", "-m", method, "--spp", spp, "-o", file}).status == 0);
+    };
+    render("path", "1", "a1.exr");
+    render("path-nee", "4", "b4.exr");
+    render("path", "16", "a16.exr");
+    render("path-nee", "64", "truth.exr");
+    REQUIRE(run(workspace, {"compare", "a1.exr", "b4.exr", "a16.exr", "truth.exr", "--report", "r.html"}).status == 0);
+    const std::string page = read_text(workspace / "r.html");
+    const std::size_t begin = page.find("\"curves\":["), end = page.find("],\"errorName\"");
+    REQUIRE(begin < end);
+    const std::string curves = page.substr(begin, end - begin);
+    CHECK(curves.find("{\"name\":\"path\",\"points\":[[") != std::string::npos);
+    CHECK(curves.find("{\"name\":\"path-nee\",\"points\":[[") != std::string::npos);
+    CHECK(curves.find(",1,") < curves.find(",16,"));
+    CHECK(curves.find("[0,") == std::string::npos);  // seconds are known
+}
+
+TEST_CASE("compare: the picture of a difference names the files") {
+    const Workspace workspace;
+    lightswitch::save(workspace / "a.pfm", image(20, 10, 1));
+    lightswitch::save(workspace / "a-name-that-is-longer.pfm", image(20, 10, 1));
+    lightswitch::save(workspace / "b.pfm", image(20, 10, 1.5f));
+    const auto width = [&](const char* first) {
+        CHECK(run(workspace, {"compare", first, "b.pfm", "-o", "d.png"}).status == 0);
+        const std::string png = read_text(workspace / "d.png");
+        const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(png.at(at)); };
+        return byte(18) << 8 | byte(19);  // of the header
+    };
+    CHECK(width("a-name-that-is-longer.pfm") - width("a.pfm") == 20 * 6);  // letters of 6 dots
+}

@@ -231,10 +231,13 @@ TEST_CASE("methods, info, version and help print") {
          {"full: Scene<", "256 x 256 pixels", "2 spheres", "1 conductor", "1 dielectric", "1 luminous mesh", "Embree"})
         CHECK(info.prints(text));
     CHECK(run(workspace, {"--version"}).out.starts_with("lightswitch "));
-    for (const char* command : {"render", "compare", "verify", "strategies", "info"}) {
+    for (const char* command : {"render", "compare", "verify", "strategies", "methods", "info"}) {
         const Ended help = run(workspace, {command, "--help"});
         CHECK(help.status == 0);
         CHECK(help.prints("Usage: lightswitch " + std::string(command)));
+        const std::size_t examples = help.out.find("\nExamples:\n");
+        REQUIRE(examples != std::string::npos);  // of its own
+        CHECK(help.out.find("\n  lightswitch " + std::string(command), examples) != std::string::npos);
     }
     CHECK(workspace.files().empty());
 }

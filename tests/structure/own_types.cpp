@@ -1,5 +1,5 @@
-// What a user forgets in a method or a surface model of their own must be named by the compiler. Each CASE is complete
-// as it is, and lacks one thing when MUST_NOT_COMPILE is defined.
+// What a user forgets in a method or a surface model of their own, or mistakes for a scene or a method, must be named by the
+// compiler. Each CASE is right as it is, and wrong in one thing when MUST_NOT_COMPILE is defined.
 
 #include <lightswitch/method/path_tracer.hpp>
 #include <lightswitch/render/render.hpp>
@@ -57,10 +57,49 @@ struct Chalk {
     ls::BsdfValue evaluate(const ls::Vec3&, const ls::Vec3&, ls::Transport) const { return {}; }
     ls::Maybe<ls::BsdfSample> sample(const ls::Vec3&, const ls::Vec3&, ls::Transport) const { return {}; }
 };
-// What the documentation tells users to write, because GCC says only that Bsdfs<Chalk> is wrong, but not why.
-static_assert(ls::Bsdf<Chalk>);
 using ChalkScene = ls::Scene<ls::Bsdfs<Chalk>, ls::AllLights>;
 ls::Image image(const ChalkScene& scene) { return ls::render(scene, ls::PathTracer{}); }
+#elif CASE <= 11
+struct Method {
+    static constexpr std::string_view name = "a function that frame.pixels or frame.paths cannot call";
+    static constexpr ls::Kind kind = ls::Kind::heuristic;
+    int start(auto&) const { return 0; }
+    void iterate(auto& frame, int&) const {
+        int calls = 0;
+#if CASE == 7
+        frame.pixels([](RIGHT_OR_WRONG(const, ) ls::Ray&, auto& sampler) { return ls::Rgb(sampler.next_1d()); });
+#elif CASE == 8
+        frame.pixels([](const ls::Ray&, auto&, const auto&) { return RIGHT_OR_WRONG(ls::Rgb(0), 0.0f); });
+#elif CASE == 9
+        frame.pixels([calls](const ls::Ray&, auto&) RIGHT_OR_WRONG(, mutable) {
+            return ls::Rgb(float(RIGHT_OR_WRONG(calls, ++calls)));
+        });
+#elif CASE == 10
+        frame.paths(10, [](std::uint64_t, auto& UNLESS_FORGOTTEN(, auto&)) {});
 #else
-#error "CASE must be 1 to 6"
+        frame.paths(10, [calls](std::uint64_t, auto&, auto&) RIGHT_OR_WRONG(, mutable) {
+            RIGHT_OR_WRONG(static_cast<void>(calls), ++calls);
+        });
+#endif
+        static_cast<void>(calls);
+    }
+};
+ls::Image image(const ls::DiffuseScene& scene) { return ls::render(scene, Method{}); }
+#elif CASE == 12
+ls::Image image(const ls::DiffuseScene& scene) { return ls::render(RIGHT_OR_WRONG(scene, 42), ls::PathTracer{}); }
+#elif CASE == 13
+ls::Image image(const ls::AnyScene& any) {
+    return std::visit([&](const auto& scene) { return ls::render(RIGHT_OR_WRONG(scene, any), ls::PathTracer{}); }, any);
+}
+#elif CASE == 14
+#include <lightswitch/compare/verify.hpp>
+ls::Verdict verdict(const ls::DiffuseScene& scene) {
+    return ls::verify(RIGHT_OR_WRONG(scene, 42), ls::PathTracer{}, ls::PathTracer{});
+}
+#elif CASE == 15
+ls::Image image(const ls::DiffuseScene& scene, const std::variant<ls::PathTracer>& any) {
+    return std::visit([&](const auto& method) { return ls::render(scene, RIGHT_OR_WRONG(method, any)); }, any);
+}
+#else
+#error "CASE must be 1 to 15"
 #endif

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # readme.sh FILE COMPILER...: every ```cpp block of FILE compiles as a program of its own (COMPILER... with all its options; the
-# source is appended), and the first one is samples/01_minimal.cpp to the letter, without its comments.
+# source is appended) and ends in words, not in std::terminate, when the library refuses something; and the first one is
+# samples/01_minimal.cpp to the letter, without its comments.
 set -eu
 file=${1:?usage: readme.sh FILE COMPILER...}
 shift
@@ -16,6 +17,7 @@ diff <(grep -v '^//' "$root/samples/01_minimal.cpp" | sed '/./,$!d') "$work/1.cp
   exit 1
 }
 for block in "${blocks[@]}"; do
+  grep -q '^} catch (const ls::Error& error) {$' "$block" || { echo "a program of $file does not catch ls::Error:"; cat "$block"; exit 1; }
   "$@" -fsyntax-only "$block"
 done
 echo "${#blocks[@]} programs compile"

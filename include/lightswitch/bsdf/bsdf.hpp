@@ -55,6 +55,20 @@ concept Bsdf = requires(const B bsdf, const Vec3 direction, const Vec3 u, const 
     { bsdf.problem() } -> std::convertible_to<std::string>;
 };
 
+namespace detail {
+
+/// Named for every type that is to be a surface model, so that the compiler says which one is none and what it lacks.
+template <class B>
+struct RequireBsdf {
+    static_assert(Bsdf<B>,
+                  "a surface model needs `static constexpr bool specular`, "
+                  "`BsdfValue evaluate(const Vec3& wo, const Vec3& wi, Transport) const`, "
+                  "`Maybe<BsdfSample> sample(const Vec3& wo, const Vec3& u, Transport) const` and `std::string problem() const`");
+    static constexpr bool value = true;
+};
+
+}  // namespace detail
+
 /// Explains a reflectance that is not a fraction, or returns an empty string.
 inline std::string reflectance_problem(const char* name, const Rgb& value) {
     for (int c = 0; c < 3; ++c)

@@ -22,11 +22,12 @@ struct FalseColorOptions {
     enum class Map { diverging, sequential };
 
     Map map = Map::diverging;
-    float scale = 0;         ///< the value at the end of the map; 0 takes it from `percentile`
+    float scale = 0;         ///< the value at the end of the map; 0 takes it from `percentile`, and rounds it up
     float percentile = 99;   ///< of the pixels' magnitudes, in (0, 100]: larger values are clamped
     bool black_zero = false;  ///< a diverging map through black instead of white
     bool legend = true;      ///< a colour bar with numbers below the picture
-    std::string caption{};   ///< what the numbers are, written below the bar
+    std::string caption{};   ///< what the numbers are, written below the bar (ASCII)
+    int letter_size = 0;     ///< pixels per dot of the legend's letters; 0 chooses by the width of the picture
 };
 
 namespace detail {
@@ -93,11 +94,21 @@ inline Rgb map_color(float value, float scale, const FalseColorOptions& options)
                                                             : sequential_color(std::abs(t));
 }
 
-/// `picture` with a colour bar, tick labels and a caption below; widened when the labels need more room.
-inline Image with_legend(const Image& picture, float scale, const FalseColorOptions& options) {
+/// The smallest of 1, 1.5, 2, 3, 4, 5, 6, 8 and 10, times a power of ten, that is not below a positive `value`: its half and its
+/// quarters are round, too.
+inline float round_up(float value) {
+    const double power = std::pow(10, std::floor(std::log10(static_cast<double>(value))));
+    for (const double digit : {1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0})
+        if (const auto round = static_cast<float>(digit * power); value <= round) return round;
+    return static_cast<float>(10 * power);
+}
+
+/// A colour bar with tick labels and a caption, `width` pixels wide, or more where the labels need it.
+inline Image legend(int width, float scale, const FalseColorOptions& options) {
     const bool diverging = options.map == FalseColorOptions::Map::diverging;
-    const int dot = std::max(1, picture.width() / 500), margin = 6 * dot, bar = 10 * dot, line = 10 * dot;
-    const int steps = picture.width() >= 240 * dot ? 4 : 2;
+    const int dot = options.letter_size > 0 ? options.letter_size : std::max(1, width / 250);
+    const int margin = 6 * dot, bar = 10 * dot, line = 10 * dot;
+    const int steps = width >= 240 * dot ? 4 : 2;
 
     std::vector<std::string> labels;
     int widest = 0;
@@ -108,30 +119,45 @@ inline Image with_legend(const Image& picture, float scale, const FalseColorOpti
         labels.emplace_back(text.data());
         widest = std::max(widest, text_width(labels.back(), dot));
     }
-    const int bar_left = margin + widest / 2;
-    const int width = std::max({picture.width(), (steps + 1) * (widest + margin) + margin,
-                                text_width(options.caption, dot) + 2 * margin});
-    const int bar_width = width - 2 * bar_left;
-    Image image(width, picture.height() + 2 * margin + bar + line + (options.caption.empty() ? 0 : line + dot));
+    width = std::max({width, steps * (widest + 3 * dot) + widest + 2 * margin, text_width(options.caption, dot) + 2 * margin});
+    const int bar_left = margin + widest / 2, bar_width = width - 2 * bar_left;
+    Image image(width, 2 * margin + bar + line + (options.caption.empty() ? 0 : line + dot));
     const Rgb paper = srgb(255, 255, 255), ink = srgb(20, 20, 20);
     fill_rectangle(image, 0, 0, image.width(), image.height(), paper);
-    paste(image, (width - picture.width()) / 2, 0, picture);
 
-    const int top = picture.height() + margin;
-    fill_rectangle(image, bar_left - 1, top - 1, bar_width + 2, bar + 2, ink);
+    fill_rectangle(image, bar_left - 1, margin - 1, bar_width + 2, bar + 2, ink);
     for (int x = 0; x < bar_width; ++x) {
         const float at = static_cast<float>(x) / static_cast<float>(bar_width - 1);
-        fill_rectangle(image, bar_left + x, top, 1, bar, map_color(diverging ? 2 * at - 1 : at, 1, options));
+        fill_rectangle(image, bar_left + x, margin, 1, bar, map_color(diverging ? 2 * at - 1 : at, 1, options));
     }
     for (int i = 0; i <= steps; ++i) {
         const std::string& label = labels[static_cast<std::size_t>(i)];
         const int x = bar_left + i * (bar_width - 1) / steps;
-        fill_rectangle(image, x, top + bar, 1, 2 * dot + 1, ink);
-        draw_text(image, x - text_width(label, dot) / 2, top + bar + 3 * dot + 1, label, ink, dot);
+        fill_rectangle(image, x, margin + bar, dot, 2 * dot + 1, ink);
+        draw_text(image, x - text_width(label, dot) / 2, margin + bar + 3 * dot + 1, label, ink, dot);
     }
-    draw_text(image, (width - text_width(options.caption, dot)) / 2, top + bar + 3 * dot + line + 2, options.caption,
+    draw_text(image, (width - text_width(options.caption, dot)) / 2, margin + bar + 3 * dot + line + 2, options.caption,
               ink, dot);
     return image;
+}
+
+/// `picture` with its legend below.
+inline Image with_legend(const Image& picture, float scale, const FalseColorOptions& options) {
+    const Image below = legend(picture.width(), scale, options);
+    Image image(below.width(), picture.height() + below.height());
+    fill_rectangle(image, 0, 0, image.width(), image.height(), srgb(255, 255, 255));
+    paste(image, (image.width() - picture.width()) / 2, 0, picture);
+    paste(image, 0, picture.height(), below);
+    return image;
+}
+
+inline void check(const FalseColorOptions& options) {
+    if (!(options.percentile > 0 && options.percentile <= 100))
+        throw Error("the percentile of a false colour scale must be above 0 and at most 100");
+    if (!is_finite(options.scale) || options.scale < 0)
+        throw Error("the scale of false colours must be positive, or 0 to choose it from the image");
+    if (options.letter_size < 0 || options.letter_size > 64)
+        throw Error("the letters of a legend must have 1 to 64 pixels per dot, or 0 to choose it by the width");
 }
 
 }  // namespace detail
@@ -143,15 +169,22 @@ inline Image with_legend(const Image& picture, float scale, const FalseColorOpti
 /// an empty image and for options out of their range.
 inline Image false_color(const Image& values, const FalseColorOptions& options = {}) {
     if (values.empty()) throw Error("an image without pixels has no false colours");
-    if (!(options.percentile > 0 && options.percentile <= 100))
-        throw Error("the percentile of a false colour scale must be above 0 and at most 100");
-    if (!is_finite(options.scale) || options.scale < 0)
-        throw Error("the scale of false colours must be positive, or 0 to choose it from the image");
-    const float scale = options.scale > 0 ? options.scale : detail::magnitude_percentile(values, options.percentile);
+    detail::check(options);
+    const float scale =
+        options.scale > 0 ? options.scale : detail::round_up(detail::magnitude_percentile(values, options.percentile));
     Image picture(values.width(), values.height());
     for (std::size_t i = 0; i < values.pixels().size(); ++i)
         picture.pixels()[i] = detail::map_color(detail::dominant_channel(values.pixels()[i]), scale, options);
     return options.legend ? detail::with_legend(picture, scale, options) : picture;
+}
+
+/// The legend of such pictures by itself, for a sheet of several that share `options.scale`: about `width` pixels wide. Throws
+/// `Error` when the scale is not given, and for options out of their range.
+inline Image color_bar(int width, const FalseColorOptions& options) {
+    detail::check(options);
+    if (!(options.scale > 0)) throw Error("a colour bar by itself needs a scale");
+    Image::check_size(width, 1);
+    return detail::legend(width, options.scale, options);
 }
 
 }  // namespace lightswitch

@@ -37,7 +37,7 @@ struct ReportMap {
     std::string name;
     Image values;
     bool is_signed = false;  ///< shown from -scale to scale, otherwise from 0
-    double scale = 0;        ///< the value at the end of the colour map; 0 takes the 99th percentile of the magnitudes
+    double scale = 0;        ///< the value at the end of the colour map; 0: the 99th percentile of the magnitudes, rounded up
     std::string legend{};    ///< what the numbers are, with their unit
 };
 
@@ -72,6 +72,8 @@ struct Report {
     std::optional<std::size_t> reference{};  ///< index of the image that the others are compared with at first
     std::vector<ReportMap> maps{};
     std::vector<ReportCurve> curves{};
+    std::string error_name = "Error";         ///< what the curves show
+    std::optional<double> reference_noise{};  ///< the part of the errors that is its own, drawn as a level
     std::vector<ReportHistogram> histograms{};
     std::vector<ReportTable> tables{};
 };
@@ -148,6 +150,8 @@ inline std::string report_json(const Report& report, KeptBits kept) {
                           return "{\"name\":" + json_text(curve.name) +
                                  ",\"points\":" + json_array(curve.points, point) + "}";
                       }) +
+           ",\"errorName\":" + json_text(report.error_name) + ",\"noise\":" +
+           (report.reference_noise ? json_number(*report.reference_noise) : "null") +
            ",\"histograms\":" + json_array(report.histograms, report_histogram) + "}";
 }
 

@@ -57,13 +57,13 @@ function marker(i, x, y) {
   return svg('path', {d, fill: color(i)});
 }
 
-function key(i, text, dashed) {
+// What a kind of line stands for, and of curve `i`.
+function lineKey(kind, text, style = {stroke: 'currentColor'}, ...more) {
   const sample = svg('svg', {width: 26, height: 12, 'aria-hidden': 'true'});
-  const style = dashed ? {class: 'ideal', stroke: 'currentColor'} : {class: 'curve', stroke: color(i)};
-  sample.append(svg('line', {x1: 0, x2: 26, y1: 6, y2: 6, ...style}));
-  if (!dashed) sample.append(marker(i, 13, 6));
+  sample.append(svg('line', {class: kind, x1: 0, x2: 26, y1: 6, y2: 6, ...style}), ...more);
   return element('li', {}, sample, text);
 }
+const key = (i, text) => lineKey('curve', text, {stroke: color(i)}, marker(i, 13, 6));
 
 function errorChart(title, xTitle, column, width) {
   const curves = report.curves.map((curve, i) => ({
@@ -73,15 +73,16 @@ function errorChart(title, xTitle, column, width) {
   if (!curves.length) return null;
   const ideal = ([first], xEnd) => [first, [xEnd, first[1] * Math.sqrt(first[0] / xEnd)]];
   for (const curve of curves) curve.ideal = ideal(curve.points, curve.points[curve.points.length - 1][0]);
-  const all = curves.flatMap(curve => [...curve.points, ...curve.ideal]);
+  const all = curves.flatMap(curve => [...curve.points, ...curve.ideal]), level = report.noise > 0 ? [report.noise] : [];
   const range = values => [Math.min(...values) / 1.25, Math.max(...values) * 1.25];
-  const [x0, x1] = range(all.map(p => p[0])), [y0, y1] = range(all.map(p => p[1]));
+  const [x0, x1] = range(all.map(p => p[0])), [y0, y1] = range([...all.map(p => p[1]), ...level]);
   const {left, right, top, bottom, height} = margins;
   const x = v => left + (width - left - right) * Math.log(v / x0) / Math.log(x1 / x0);
   const y = v => height - bottom - (height - top - bottom) * Math.log(v / y0) / Math.log(y1 / y0);
   const ticks = (from, to) => logTicks(from, to).map(v => [v, tickText(v)]);
-  const root = frame(width, title, xTitle, 'Error', x, y, ticks(x0, x1), ticks(y0, y1));
+  const root = frame(width, title, xTitle, report.errorName, x, y, ticks(x0, x1), ticks(y0, y1));
   const path = points => 'M' + points.map(p => `${x(p[0]).toFixed(1)} ${y(p[1]).toFixed(1)}`).join('L');
+  for (const v of level) root.append(svg('line', {class: 'level', x1: left, x2: width - right, y1: y(v), y2: y(v)}));
   for (const curve of curves) root.append(svg('path', {class: 'ideal', stroke: color(curve.i), d: path(curve.ideal)}));
   for (const curve of curves) {
     root.append(svg('path', {class: 'curve', stroke: color(curve.i), d: path(curve.points)}));
@@ -91,7 +92,8 @@ function errorChart(title, xTitle, column, width) {
       root.append(dot);
     }
   }
-  const list = element('ul', {class: 'keys'}, ...curves.map(c => key(c.i, c.name)), key(0, '1/\u221aN', true));
+  const list = element('ul', {class: 'keys'}, ...curves.map(c => key(c.i, c.name)), lineKey('ideal', '1/\u221aN'),
+                       ...level.map(v => lineKey('level', `noise of the reference: about ${short(v)}`)));
   return element('figure', {class: 'panel'}, element('figcaption', {}, title), list, root);
 }
 
@@ -112,11 +114,8 @@ function histogramChart(histogram, width) {
     root.append(bar);
   });
   root.append(svg('line', {class: 'expected', x1: left, x2: width - right, y1: y(expected), y2: y(expected)}));
-  const sample = svg('svg', {width: 26, height: 12, 'aria-hidden': 'true'});
-  sample.append(svg('line', {class: 'expected', x1: 0, x2: 26, y1: 6, y2: 6}));
   const others = total > counted ? `; ${total - counted} of ${total} are not in [0, 1] and not counted` : '';
-  const list = element('ul', {class: 'keys'},
-                       element('li', {}, sample, `expected: ${short(expected)} in each bin${others}`));
+  const list = element('ul', {class: 'keys'}, lineKey('expected', `expected: ${short(expected)} in each bin${others}`));
   return element('figure', {class: 'panel'}, element('figcaption', {}, name), list, root);
 }
 

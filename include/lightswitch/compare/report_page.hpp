@@ -182,11 +182,12 @@ function paintMapped(values, scale, signed, black, pixels) {
   }
 }
 
-// The 99th percentile of the magnitudes that are finite.
+// The 99th percentile of the magnitudes that are finite, rounded up to a number whose half and quarters are round, too.
 function chooseScale(values) {
   const sizes = values.filter(Number.isFinite).map(Math.abs).sort();
-  if (!sizes.length) return 1;
-  return sizes[Math.ceil((sizes.length - 1) * 0.99)] || sizes[sizes.length - 1] || 1;
+  const size = sizes[Math.ceil((sizes.length - 1) * 0.99)] || sizes[sizes.length - 1] || 1;
+  const power = 10 ** Math.floor(Math.log10(size));
+  return Number((power * [1, 1.5, 2, 3, 4, 5, 6, 8, 10].find(digit => size <= digit * power)).toPrecision(2)) || size;
 }
 )js";
 

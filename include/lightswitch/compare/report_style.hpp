@@ -114,6 +114,7 @@ th, td { text-align: left; padding: 5px 22px 5px 0; border-bottom: 1px solid var
 th { color: var(--muted); font-weight: 600; }
 th[scope="row"] { color: var(--ink); font-weight: 400; }
 .number { text-align: right; }
+#tables td:first-child { white-space: nowrap; }
 
 #charts {
   display: grid; grid-template-columns: repeat(auto-fit, minmax(min(420px, 100%), 1fr)); gap: 16px; align-items: start;
@@ -128,6 +129,7 @@ svg .axis { stroke: var(--muted); fill: none; }
 svg .grid { stroke: var(--line); }
 svg .curve { fill: none; stroke-width: 2; stroke-linejoin: round; }
 svg .ideal { fill: none; stroke-width: 1.25; stroke-dasharray: 5 4; opacity: .8; }
+svg .level { stroke: var(--muted); stroke-width: 1.5; stroke-dasharray: 2 3; }
 svg .bin { fill: var(--s0); }
 svg .expected { stroke: var(--s1); stroke-width: 2; stroke-dasharray: 6 4; }
 .error { border: 1px solid var(--s1); border-radius: 6px; padding: 10px 14px; background: var(--panel); }

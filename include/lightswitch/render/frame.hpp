@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <concepts>
 #include <stop_token>
+#include <type_traits>
 #include <vector>
 
 namespace lightswitch {
@@ -162,6 +163,10 @@ public:
     /// Every call of `pixels` or `paths` in an iteration is given random numbers of its own, independent of the other calls'.
     template <class F>
     void pixels(const F& fn) {
+        static_assert(can_splat<F> ? std::is_invocable_r_v<Rgb, const F&, const Ray&, Sampler&, const PixelContext&>
+                                   : std::is_invocable_r_v<Rgb, const F&, const Ray&, Sampler&>,
+                      "frame.pixels needs a function `Rgb (const Ray& ray, auto& sampler)` or `Rgb (const Ray& ray, auto& sampler, "
+                      "const PixelContext& pixel)`; it is called from several threads at once, so a lambda must not be `mutable`");
         const IterationPoints points = points_of_pass(2 * pixel_passes_++);
         const int columns = (width() + tile - 1) / tile, rows = (height() + tile - 1) / tile;
         const auto work = [&](std::uint64_t unit, Splatter& splatter, detail::UnitReport& report) {
@@ -175,7 +180,11 @@ public:
     /// Calls `fn(index, sampler, splatter)` for every index in [0, n): typically one light path each. Splats are added to the
     /// film in the order of the index, whatever the number of threads. `per_unit` consecutive indices are the share of work that a
     /// thread takes.
-    void paths(std::uint64_t n, const auto& fn, std::uint64_t per_unit = paths_per_unit) {
+    template <class F>
+    void paths(std::uint64_t n, const F& fn, std::uint64_t per_unit = paths_per_unit) {
+        static_assert(std::is_invocable_v<const F&, std::uint64_t&, Sampler&, Splatter&>,
+                      "frame.paths needs a function `(std::uint64_t index, auto& sampler, auto& splatter)`; it is called from several "
+                      "threads at once, so a lambda must not be `mutable`");
         counts_.paths += n;
         const IterationPoints points = points_of_pass(2 * path_passes_++ + 1);
         run_units((n + per_unit - 1) / per_unit, units_per_wave, [&](std::uint64_t unit, Splatter& splatter, detail::UnitReport&) {

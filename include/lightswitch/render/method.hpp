@@ -27,6 +27,28 @@ constexpr std::string_view name(Kind kind) {
     }
 }
 
+/// What rendering itself asks of a scene; what methods ask for is between them and the scene.
+template <class S>
+concept RenderableScene = requires(const S scene) {
+    scene.camera();
+    scene.film();
+    { scene.name() } -> std::convertible_to<std::string_view>;
+    { scene.camera_id() } -> std::convertible_to<std::string_view>;
+};
+
+namespace detail {
+
+/// Named for every type that is to be rendered, so that the compiler says which one is no scene.
+template <class S>
+struct RequireScene {
+    static_assert(RenderableScene<S>,
+                  "what is rendered must be a scene, such as `stock::cornell_box()` or what `build_scene` returns (std::visit "
+                  "gives the one in an `AnyScene`), and comes before the method");
+    static constexpr bool value = true;
+};
+
+}  // namespace detail
+
 /// A type that says what it is: `static constexpr std::string_view name` and `static constexpr Kind kind`.
 template <class M>
 concept NamedMethod = requires {
@@ -38,7 +60,8 @@ concept NamedMethod = requires {
 /// the ray's origin. Called from many threads at once on the same object.
 template <class M, class SceneType>
 concept PixelMethod =
-    NamedMethod<M> && requires(const M method, const SceneType& scene, const Ray& ray, Sampler& sampler) {
+    NamedMethod<M> && detail::RequireScene<SceneType>::value &&
+    requires(const M method, const SceneType& scene, const Ray& ray, Sampler& sampler) {
         { method.radiance(scene, ray, sampler) } -> std::same_as<Rgb>;
     };
 

@@ -70,7 +70,7 @@ decltype(auto) as_image_method(const M& method) {
         static_assert(PixelMethod<M, SceneType>,
                       "a rendering method needs `static constexpr std::string_view name`, `static constexpr Kind kind`, and "
                       "either `Rgb radiance(const auto& scene, const Ray&, auto& sampler) const` or "
-                      "`start(frame)` with `iterate(frame, state)`");
+                      "`start(frame)` with `iterate(frame, state)` (std::visit gives the one in an `AnyMethod`)");
         return PerPixel<M>{method};
     }
 }
@@ -81,6 +81,8 @@ decltype(auto) as_image_method(const M& method) {
 /// iterations), whatever the threads and however often it was stopped in between. The scene must outlive it.
 template <class SceneType, class M, Executor E = TbbExecutor>
 class Session {
+    static_assert(detail::RequireScene<SceneType>::value);
+
 public:
     Session(const SceneType& scene, const M& method, const Settings& settings = {})
         requires std::same_as<E, TbbExecutor>
@@ -143,6 +145,7 @@ public:
                            {"scene", scene_.name()},
                            {"camera", scene_.camera_id()},
                            {"samples", std::to_string(film_.iterations())},
+                           {"seconds", std::to_string(statistics_.seconds)},
                            {"seed", std::to_string(settings_.seed)},
                            {"sampling", std::string(lightswitch::name(settings_.sampling))}};
         if (statistics_.counts.non_finite > 0) result.metadata["non_finite"] = std::to_string(statistics_.counts.non_finite);

@@ -17,7 +17,8 @@
 namespace lightswitch {
 
 /// The surface models of a scene.
-template <Bsdf... B>
+template <class... B>
+    requires(detail::RequireBsdf<B>::value && ...)
 struct Bsdfs {};
 /// The kinds of light of a scene.
 template <Light... L>

@@ -180,6 +180,26 @@ inline LibraryDescription describe_cornell_sculpture() {
     return scene;
 }
 
+/// The sculpture, a sphere of glass and a matt one on a slab before an empty background, lit by two lamps outside of the picture: the
+/// scene in which outlines show.
+inline LibraryDescription describe_still_life() {
+    LibraryDescription scene;
+    scene.name = "still-life";
+    const std::size_t stone = scene.add(Lambert{{0.62f, 0.58f, 0.52f}});
+    const std::size_t bronze = scene.add(RoughConductor{.alpha = 0.25f, .reflectance = {0.85f, 0.62f, 0.4f}});
+    const std::size_t lamp = scene.add(Lambert{Rgb(0)});
+    scene.add(detail::block({-1.3, -0.12, -0.8}, {1.3, 0, 0.8}), stone);
+    scene.add(torus_knot().transformed(DMat4({0.5, 0, -0.2, 0}, {0, 0.54, 0, 0}, {0.2, 0, 0.5, 0}, {-0.52, 0.6, -0.1, 1})), bronze);
+    scene.add(Sphere{{0.25, 0.26, 0.4}, 0.26}, scene.add(Dielectric{.eta = 1.5f}));
+    scene.add(Sphere{{0.76, 0.42, -0.15}, 0.42}, scene.add(Lambert{{0.12f, 0.45f, 0.42f}}));
+    scene.add(quad({-0.4, 3, 0.2}, {0.4, 3, 0.2}, {0.4, 3, 1}, {-0.4, 3, 1}), lamp, Rgb(42, 37, 30));
+    scene.add(quad({-3, 0.4, 1.6}, {-3, 0.4, 0.4}, {-3, 1.8, 0.4}, {-3, 1.8, 1.6}), lamp, Rgb(6, 8, 12));
+    scene.camera.to_world = CameraDescription::look_at({0, 1.3, 4.4}, {0, 0.52, 0}, {0, 1, 0});
+    scene.camera.fov = 34;
+    scene.film.width = scene.film.height = 256;
+    return scene;
+}
+
 /// Two rooms after the scene with the ajar door of Veach (1997, chapter 11): the only lamp is in the far one and shines away from
 /// the door, so that all light in the room of the camera has come through the gap, after one reflection at least. On the table are
 /// a sphere of glass, a mirror, a glossy and a diffuse one.
@@ -214,6 +234,8 @@ inline DiffuseScene cornell_box() {
 inline FullScene cornell_spheres() { return build_scene<AllBsdfs, AllLights>(describe_cornell_spheres()); }
 /// `describe_cornell_sculpture`, built.
 inline FullScene cornell_sculpture() { return build_scene<AllBsdfs, AllLights>(describe_cornell_sculpture()); }
+/// `describe_still_life`, built.
+inline FullScene still_life() { return build_scene<AllBsdfs, AllLights>(describe_still_life()); }
 /// `describe_ajar_door`, built.
 inline FullScene ajar_door() { return build_scene<AllBsdfs, AllLights>(describe_ajar_door()); }
 /// `describe_furnace`, built.
@@ -222,14 +244,15 @@ inline DiffuseScene furnace(float albedo = 0.5f) {
 }
 
 /// Names that `describe` knows.
-inline constexpr std::array<std::string_view, 5> names{"cornell-box", "cornell-spheres", "cornell-sculpture", "ajar-door",
-                                                            "furnace"};
+inline constexpr std::array<std::string_view, 6> names{"cornell-box", "cornell-spheres", "cornell-sculpture",
+                                                       "still-life",  "ajar-door",       "furnace"};
 
 /// The stock scene of that name, or nothing.
 inline std::optional<LibraryDescription> describe(std::string_view name) {
     if (name == "cornell-box") return describe_cornell_box();
     if (name == "cornell-spheres") return describe_cornell_spheres();
     if (name == "cornell-sculpture") return describe_cornell_sculpture();
+    if (name == "still-life") return describe_still_life();
     if (name == "ajar-door") return describe_ajar_door();
     if (name == "furnace") return describe_furnace();
     return std::nullopt;
