@@ -257,12 +257,19 @@ private:
 
     /// Whether corner `p` keeps the polygon from being cut from `c` to `a`.
     bool is_in_the_way(std::size_t p, const Ear& ear) const {
-        const auto [a, b, c] = ear;
-        const double ab = side(a, b, p), bc = side(b, c, p);
-        if (ab < 0 || bc < 0 || side(c, a, p) < 0) return false;
+        const auto left_of = [&](std::size_t q) {
+            return std::array{side(ear.a, ear.b, q), side(ear.b, ear.c, q), side(ear.c, ear.a, q)};
+        };
+        const auto [ab, bc, ca] = left_of(p);
+        if (ab < 0 || bc < 0 || ca < 0) return false;
         if (ab > 0 && bc > 0) return true;
-        // It touches the outline, from one side or the other.
-        return cross_inside(a, c, p, links_[p].before) || cross_inside(a, c, p, links_[p].after);
+        // It touches the outline: from the outside, unless one of its edges goes into the ear.
+        const std::array<bool, 3> inside{ab > 0, bc > 0, ca > 0};
+        const auto goes_in = [&](std::size_t q) {
+            const auto sides = left_of(q);
+            return (inside[0] || sides[0] > 0) && (inside[1] || sides[1] > 0) && (inside[2] || sides[2] > 0);
+        };
+        return goes_in(links_[p].before) || goes_in(links_[p].after);
     }
 
     /// Neighbours in what is left of the polygon, where the corner stands in the queue (`none` once it is clipped), and
