@@ -24,9 +24,9 @@ public:
     ///
     /// Returns false, after appending the fan, when the polygon crosses itself or has no area.
     bool cut(std::span<const std::uint32_t> corners, Mesh& mesh) {
-        const bool is_triangle = corners.size() == 3;
-        const bool has_area = is_triangle || project(corners, mesh);
-        if (is_triangle || (has_area && fan_covers())) return fan(corners, mesh), true;
+        if (corners.size() == 3 || halves_agree(corners, mesh)) return fan(corners, mesh), true;
+        const bool has_area = project(corners, mesh);
+        if (has_area && fan_covers()) return fan(corners, mesh), true;
         if (has_area && !crosses_itself() && clip_ears(corners, mesh)) return true;
         return fan(corners, mesh), false;
     }
@@ -37,6 +37,16 @@ private:
     static void fan(std::span<const std::uint32_t> corners, Mesh& mesh) {
         for (std::size_t i = 2; i < corners.size(); ++i)
             mesh.triangles.push_back({corners[0], corners[i - 1], corners[i]});
+    }
+
+    /// Whether the two triangles of a quadrilateral's fan face one way, by more than rounding errors. Spares most
+    /// quadrilaterals all that follows.
+    static bool halves_agree(std::span<const std::uint32_t> corners, const Mesh& mesh) {
+        if (corners.size() != 4) return false;
+        const auto arm = [&](std::size_t i) { return mesh.positions[corners[i]] - mesh.positions[corners[0]]; };
+        const DVec3 diagonal = arm(2);
+        const double size = glm::dot(diagonal, diagonal);
+        return glm::dot(glm::cross(arm(1), diagonal), glm::cross(diagonal, arm(3))) > 1e-20 * size * size;
     }
 
     static double cross(const DVec2& a, const DVec2& b) { return a.x * b.y - a.y * b.x; }
