@@ -2,12 +2,17 @@
 
 #include "program/process.hpp"
 
+#include <lightswitch/film/image_io.hpp>
+
 using namespace lightswitch::test;
 
 TEST_CASE("notices on mesh files are warnings, once each, unless --quiet") {
     const Workspace workspace;
     workspace.write("a.obj", "l 1 1\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\nf 1 3 4\n");
-    const std::string shape = "<shape type=\"obj\"><string name=\"filename\" value=\"a.obj\"/></shape>";
+    // The second one hides behind the first.
+    const std::string shape =
+        "<shape type=\"obj\"><string name=\"filename\" value=\"a.obj\"/><transform name=\"to_world\"><translate "
+        "z=\"-1\"/></transform></shape>";
     workspace.write(
         "s.xml",
         "<scene version=\"3.0.0\"><sensor type=\"perspective\"><float name=\"fov\" value=\"45\"/>"
@@ -24,6 +29,7 @@ TEST_CASE("notices on mesh files are warnings, once each, unless --quiet") {
     const Ended ended = run(workspace, {"render", "s.xml", "--spp", "4", "--output", "a.pfm"});
     CHECK(ended.status == 0);
     CHECK(ended.err == warnings);
+    CHECK(lightswitch::load_image(workspace / "a.pfm").mean().x == doctest::Approx(0.09284).epsilon(1e-4));
     const Ended info = run(workspace, {"info", "s.xml"});
     CHECK(info.status == 0);
     CHECK(info.err == warnings);
