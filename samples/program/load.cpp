@@ -1,5 +1,6 @@
 #include "load.hpp"
 
+#include "messages.hpp"
 #include "text.hpp"
 
 #include <lightswitch/load/mitsuba.hpp>
@@ -12,9 +13,9 @@
 namespace lightswitch::program {
 namespace {
 
-LibraryDescription describe(const SceneOptions& options) {
+LibraryDescription describe(const SceneOptions& options, Notices& notices) {
     const std::string& scene = options.scene;
-    if (scene.size() >= 4 && scene.ends_with(".xml")) return load_mitsuba(scene, options.defines);
+    if (scene.size() >= 4 && scene.ends_with(".xml")) return load_mitsuba(scene, options.defines, &notices);
     const auto stock = stock::describe(scene);
     if (!stock) {
         std::error_code ignored;
@@ -65,8 +66,11 @@ SceneSummary summarize(const LibraryDescription& scene) {
 
 }  // namespace
 
-LoadedScene load_scene(const SceneOptions& options) {
-    LibraryDescription description = describe(options);
+LoadedScene load_scene(const SceneOptions& options, bool quiet) {
+    Notices notices;
+    LibraryDescription description = describe(options, notices);
+    if (!quiet)
+        for (const std::string& notice : notices) print_warning(notice);
     FilmDescription& film = description.film;
     if (options.size) {
         film.width = options.size->width;

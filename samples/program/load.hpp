@@ -25,8 +25,9 @@ struct LoadedScene {
     AnyScene scene;
 };
 
-/// Reads and builds the scene. Throws `Error` for whatever is wrong with it.
-LoadedScene load_scene(const SceneOptions& options);
+/// Reads and builds the scene, and unless `quiet` warns of what its mesh files hold that is skipped or guessed. Throws
+/// `Error` for whatever is wrong with it.
+LoadedScene load_scene(const SceneOptions& options, bool quiet = false);
 
 /// How long paths may become: as the command line says, or else the scene, or else as usual.
 PathLength path_length(const SceneSummary& summary, const std::optional<int>& max_depth,

@@ -124,7 +124,7 @@ void add_render(CLI::App& app, RenderOptions& options) {
         "brightness of .png: radiance times 2^STOPS (default: 0)");
     app.add_option("--stats", options.stats, "write the render's numbers as JSON; - is standard output")
         ->type_name("FILE.json");
-    app.add_flag("-q,--quiet", options.quiet, "no progress and no summary");
+    app.add_flag("-q,--quiet", options.quiet, "no progress, no notices on mesh files, no summary");
     add_method_options(app, options.of_method);
     app.footer(
         "Of --spp, --seconds and --error the limit that is met first ends the render. Ctrl-C ends it too:\n"
@@ -223,7 +223,7 @@ void add_verify(CLI::App& app, VerifyCommand& command) {
         app, "--report", "FILE.html", [&](const std::string& text) { command.report = text; },
         "a page with images, maps of differences and p-values, error over\ntime and all numbers. Needs no network");
     app.add_option("--json", command.json, "write the verdicts as JSON; - is standard output")->type_name("FILE.json");
-    app.add_flag("-q,--quiet", command.quiet, "no progress and no text");
+    app.add_flag("-q,--quiet", command.quiet, "no progress, no notices on mesh files, no text");
     add_method_options(app, command.of_methods);
     app.footer(
         "Renders independent images by each method and compares them with the reference's by Welch's t-test: all\n"
@@ -259,7 +259,7 @@ void add_strategies(CLI::App& app, StrategiesCommand& command) {
     app.add_flag("--unweighted", command.unweighted,
                  "every strategy as if there were no other: each finds by\nitself all light of its path length, or "
                  "none of it");
-    app.add_flag("-q,--quiet", command.quiet, "no progress and no text");
+    app.add_flag("-q,--quiet", command.quiet, "no progress, no notices on mesh files, no text");
     app.footer(
         "Bidirectional path tracing joins s vertices of a path from a light with t vertices of a path from the\n"
         "camera, the lens included. The picture has a row for every path length, s + t - 1, and in it the strategies\n"

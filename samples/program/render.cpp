@@ -63,7 +63,7 @@ std::string summary_line(const AnyMethod& method, const Rendered& rendered, cons
 int render(const RenderOptions& options) {
     AnyMethod method = find_method(options.method, "--method");
     check_outputs(options);
-    const LoadedScene loaded = load_scene(options.scene);
+    const LoadedScene loaded = load_scene(options.scene, options.quiet);
     const Size size = loaded.summary.size;
     set_options({&method, 1}, options.of_method, std::size_t(size.width) * std::size_t(size.height));
     warn_about_scene(loaded, method_name(method));

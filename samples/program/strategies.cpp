@@ -130,7 +130,7 @@ int strategies(const StrategiesCommand& command) {
     std::vector<StrategyImage> all = all_strategies(command.max_depth, !command.unweighted);
     SceneOptions scene_options = command.scene;
     if (!scene_options.size) scene_options.shrink_to = 128;
-    const LoadedScene loaded = load_scene(scene_options);
+    const LoadedScene loaded = load_scene(scene_options, command.quiet);
     check_outputs(command, all, loaded.summary.size);
     warn_about_scene(loaded, Bdpt::name);
 

@@ -132,7 +132,7 @@ void load(Contest& contest, const VerifyCommand& command, const std::optional<Si
     } else if (!options.size) {
         options.shrink_to = 128;  // tiles say as much; and the time goes into samples
     }
-    contest.loaded.emplace(load_scene(options));
+    contest.loaded.emplace(load_scene(options, command.quiet));
 }
 
 Contest make_contest(const VerifyCommand& command, const std::stop_token& stop) {

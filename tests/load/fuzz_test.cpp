@@ -14,11 +14,23 @@ const std::string obj =
     "# box\nv 0 0 0\nv 1 0 0.5\nv 1 1 0\nv 0 1 -2e-3\nvt 0 0\nvt 1 1\nvn 0 0 1\nvn 0 0.6 0.8\no thing\n"
     "f 1/1/1 2/2/1 3/1/2 4/2/2\nf -4//-2 -3//1 -2//2\nf 1/1/1 3/1/2 \\\n 4/2/1\n";
 
+const std::string mixed_obj =
+    "\xef\xbb\xbf"
+    "call a\rv 0 -0.3 0\rv 1 -1 0\rv 0 1 0\rv -1 -1 0\rv 0 0 1\rvn 0 0 1\rvn 0 0 0\rvt 0 0\r"
+    "f 2// 3/1/ 4 1//1\rl 1 2\rf 2//2 3//2 4//1 1\rf 1 2 3 3 4 5 2\rcurv 0 1 1 2\r";
+
 const std::string ascii_ply =
     "ply\nformat ascii 1.0\ncomment c\nelement vertex 4\nproperty float x\nproperty float y\nproperty double "
     "z\nproperty uchar red\n"
     "element face 2\nproperty list uchar int vertex_indices\nelement edge 1\nproperty int a\nend_header\n"
     "0 0 0 255\n1 0 0 1\n1 1 0 2\n0 1 0.5 3\n4 0 1 2 3\n3 0 1 3\n7\n";
+
+const std::string faces_first_ply =
+    "ply\nformat ascii 1.0\nelement face 2\nproperty list float float vertex_indices\nelement tristrips 1\nproperty "
+    "list "
+    "int int vertex_indices\nelement edge 1\nproperty int a\nelement vertex 5\nproperty float x\nproperty float "
+    "y\nproperty float z\nproperty float nx\nproperty float ny\nproperty float nz\nend_header\n4 1 2 3 0\n5 0 1 2 2 "
+    "4\n9 0 1 2 3 -1 4 3 2 1\n7\n0 -0.3 0 0 0 1\n1 -1 0 0 0 0\n0 1 0 0 0 1\n-1 -1 0 0 0 1\n0 0 1 0 0 1\n";
 
 const std::string binary_ply =
     "ply\nformat binary_big_endian 1.0\nelement vertex 3\nproperty short x\nproperty char y\nproperty uchar z\n"
@@ -41,7 +53,8 @@ const std::string xml =
     "x=\"2\"/>"
     "</transform><bsdf type=\"dielectric\"><string name=\"int_ior\" value=\"water\"/></bsdf></shape>\n<emitter "
     "type=\"point\">"
-    "<point name=\"position\" value=\"1\"/></emitter>\n</scene>\n";
+    "<point name=\"position\" value=\"1\"/></emitter>\n<alias id=\"a\" as=\"b\"/><shape type=\"disk\"><ref "
+    "id=\"b\"/></shape></scene>\n";
 
 /// Loads `count` changed versions of `text`, and returns how many of them loaded.
 template <class Load>
@@ -70,6 +83,8 @@ TEST_CASE("changed files load or are refused") {
         CHECK_MESSAGE((loaded > count / 100 && loaded < count), loaded, " of ", count);
     };
     both(fuzz(obj, "a.obj", 700, [](const auto& path) { load_obj(path); }), 700);
+    both(fuzz(mixed_obj, "a.obj", 700, [](const auto& path) { load_obj(path); }), 700);
+    both(fuzz(faces_first_ply, "a.ply", 700, [](const auto& path) { load_ply(path); }), 700);
     both(fuzz(ascii_ply, "a.ply", 500, [](const auto& path) { load_ply(path); }), 500);
     both(fuzz(binary_ply, "a.ply", 500, [](const auto& path) { load_ply(path); }), 500);
     both(fuzz(xml, "a.xml", 1000, [](const auto& path) { load_mitsuba(path); }), 1000);

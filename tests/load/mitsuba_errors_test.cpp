@@ -96,7 +96,14 @@ TEST_CASE("what a scene file cannot say is refused with file, line and element")
     const std::string obj = "<string name=\"filename\" value=\"triangle.obj\"/>";
     const Case cases[] = {
         {"<include filename=\"x.xml\"/>", "room.xml:3: <include>: elements of this kind are not supported here"},
-        {"<alias id=\"a\" as=\"b\"/>", "room.xml:3: <alias id=\"a\">: elements of this kind are not supported"},
+        {"<alias id=\"a\" as=\"b\"/><bsdf type=\"diffuse\" id=\"a\"/>",
+         "room.xml:3: <alias id=\"a\">: there is no element with the id \"a\" above"},
+        {"<bsdf type=\"diffuse\" id=\"a\"/>\n<alias id=\"a\" as=\"a\"/>",
+         "room.xml:4: <alias id=\"a\">: the id \"a\" is already taken in line 3"},
+        {"<bsdf type=\"diffuse\" id=\"a\"/>\n<alias id=\"a\"/>",
+         "room.xml:4: <alias id=\"a\">: the attribute \"as\" is missing"},
+        {"<bsdf type=\"diffuse\" id=\"a\"/>\n<alias id=\"a\" as=\"b\"/>\n<bsdf type=\"diffuse\" id=\"b\"/>",
+         "room.xml:5: <bsdf type=\"diffuse\">: the id \"b\" is already taken in line 3"},
         {"<texture type=\"bitmap\"/>", "room.xml:3: <texture type=\"bitmap\">: elements of this kind are not"},
         {"<float name=\"x\" value=\"1\"/>", "room.xml:3: <scene>: unknown parameter \"x\""},
         {"<film type=\"hdrfilm\"/>", "room.xml:3: <film type=\"hdrfilm\">: does not belong into <scene>"},
@@ -185,10 +192,10 @@ TEST_CASE("what a scene file cannot say is refused with file, line and element")
          "the matrix is not affine"},
         {"<shape type=\"cube\"><transform name=\"to_world\"><lookat origin=\"1 2 3\" target=\"1 2 "
          "3\"/></transform></shape>",
-         "<lookat>: the camera looks at its own position"},
+         "room.xml:3: <lookat>: \"target\" is at \"origin\": move one of them"},
         {"<shape type=\"cube\"><transform name=\"to_world\"><lookat origin=\"0,0,0\" target=\"0,0,1\" "
          "up=\"0,0,2\"/></transform></shape>",
-         "up vector is parallel"},
+         "room.xml:3: <lookat>: \"up\" is parallel to the way from \"origin\" to \"target\": give another one"},
         {"<shape type=\"cube\"><transform name=\"to_world\"><lookat origin=\"0,0\" "
          "target=\"0,0,1\"/></transform></shape>",
          "\"origin\" needs 3 numbers, not 2"},

@@ -187,6 +187,30 @@ TEST_CASE("references go forward, and into other objects") {
     CHECK(scene("<bsdf type=\"dielectric\"/><shape type=\"cube\"/>").materials.size() == 1);
 }
 
+TEST_CASE("an alias is another id of an element above it") {
+    const auto result = scene(
+        "<bsdf type=\"diffuse\" id=\"white\"><float name=\"reflectance\" value=\"0.7\"/></bsdf>"
+        "<alias id=\"white\" as=\"wall\"/><alias id=\"wall\" as=\"floor\"/>"
+        "<shape type=\"cube\"><ref id=\"floor\"/></shape><shape type=\"disk\"><ref id=\"white\"/></shape>");
+    CHECK(std::get<Lambert>(result.materials.at(result.shapes[0].material).bsdf).reflectance == Rgb(0.7f));
+    CHECK(result.materials.size() == 1);
+}
+
+TEST_CASE("notices on mesh files are given once, however many shapes use the file") {
+    const Folder folder;
+    folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\nf 1 2 3\nl 2 3\n");
+    folder.write("b.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 0\nf 1//1 2//1 3//1\n");
+    const auto shape = [](const std::string& inside) { return "<shape type=\"obj\">" + inside + "</shape>"; };
+    const auto path =
+        folder.write("room.xml", "<scene version=\"3.0.0\">" + std::string(camera) + shape(file("a.obj")) +
+                                     shape(file("b.obj") + flat) + shape(file("a.obj") + flip) + "</scene>");
+    Notices notices;
+    CHECK(load_mitsuba(path, {}, &notices).shapes.size() == 3);
+    REQUIRE(notices.size() == 1);  // what is wrong with normals does not matter where they are not used
+    CHECK(notices[0] == (folder.path() / "a.obj").string() + ":4: the statement \"l\" is skipped (2 times)");
+    CHECK(load_mitsuba(path).shapes.size() == 3);
+}
+
 TEST_CASE("transforms are applied in the order of the file") {
     check_close(transform("<translate x=\"1\" y=\"2\"/><rotate z=\"1\" angle=\"90\"/>"),
                 {{0, 1, 0, 0}, {-1, 0, 0, 0}, {0, 0, 1, 0}, {-2, 1, 0, 1}}, 1e-15);

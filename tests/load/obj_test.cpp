@@ -1,6 +1,7 @@
 #include "load/files.hpp"
 
 #include <lightswitch/load/obj.hpp>
+#include <lightswitch/load/ply.hpp>
 
 using namespace lightswitch;
 using namespace lightswitch::test;
@@ -41,6 +42,8 @@ TEST_CASE("negative OBJ indices count back from the last definition") {
 TEST_CASE("all forms of OBJ corners are read") {
     const std::string head = std::string(corners) + "vt 0 0\nvt 1 0\nvn 0 0 1\nvn 0 0 2\n";
     CHECK(parse(head + "f 1/1 2/2 3/1").positions.size() == 3);
+    CHECK(parse(head + "f 1/ 2// 3/1/").positions.size() == 3);
+    CHECK(parse(head + "f 1/1/ 2/1/ 3/1/").normals.empty());
     CHECK(parse(head + "f 1//1 2//1 3//2").normals == std::vector<DVec3>{{0, 0, 1}, {0, 0, 1}, {0, 0, 2}});
     CHECK(parse(head + "f 1/1/1 2/2/1 3/1/-1").normals[2] == DVec3(0, 0, 2));
     // One position with two texture coordinates or normals is two vertices, unless normals are ignored.
@@ -66,6 +69,93 @@ TEST_CASE("OBJ comments, CRLF, continued lines and statements without geometry a
     CHECK(mesh.triangles.size() == 1);
 }
 
+TEST_CASE("mesh files of other programs are all the same square") {
+    struct Case {
+        const char* file;
+        std::vector<std::string> notices;
+    };
+    const std::string normal = "the corner has no normal or one of length 0";
+    const Case cases[] = {
+        {"bom.obj", {}},
+        {"call.obj", {":1: the statement \"call\" is skipped"}},
+        {"cr.obj", {}},
+        {"faces_first.ply", {}},
+        {"float_list.ply", {}},
+        {"mixed_normals.obj", {":7: " + normal}},
+        {"slash_empty.obj", {}},
+        {"slash_tex_trail.obj", {}},
+        {"usemap.obj", {":5: the statement \"maplib\"", ":6: the statement \"c_i", ":7: the statement \"d_i"}},
+        {"zero_normal.obj", {":6: " + normal}},
+    };
+    for (const Case& c : cases)
+        for (const FileNormals use : {FileNormals::use, FileNormals::ignore}) {
+            const auto path = std::filesystem::path(LIGHTSWITCH_TESTS_DIR) / "data/mesh-files" / c.file;
+            Notices notices;
+            const Mesh mesh =
+                path.extension() == ".obj" ? load_obj(path, use, &notices) : load_ply(path, use, &notices);
+            DVec3 area(0);
+            for (const auto& [i, j, k] : mesh.triangles)
+                area += 0.5 * glm::cross(mesh.positions[j] - mesh.positions[i], mesh.positions[k] - mesh.positions[i]);
+            CHECK_MESSAGE(area == DVec3(0, 0, 4), c.file);
+            CHECK(mesh.triangles.size() == 2);
+            for (const DVec3& p : mesh.positions) CHECK(glm::abs(p) == DVec3(1, 1, 0));
+            for (const DVec3& n : mesh.normals) CHECK(n == DVec3(0, 0, 1));
+            if (use == FileNormals::ignore && contains(c.file, "normal")) {
+                CHECK(notices.empty());
+                continue;
+            }
+            REQUIRE_MESSAGE(notices.size() == c.notices.size(), c.file);
+            for (std::size_t i = 0; i < notices.size(); ++i)
+                CHECK_MESSAGE(contains(notices[i], c.file + c.notices[i]), notices[i]);
+        }
+}
+
+TEST_CASE("OBJ statements without use are skipped, with one notice for each kind") {
+    Notices notices;
+    const Folder folder;
+    const std::string unused =
+        "vp 0.5\ncstype rat bspline\ndeg 3\nbmat u 1 0 0 1\nstep 1\np 1\nl 1 2\ncurv 0 1 1 2\ncurv2 1 2\nsurf 0 1 0 1 "
+        "1 2\nparm u 0 1\ntrim 0 1 1\nhole 0 1 1\nscrv 0 1 1\nsp 1\nend\ncon 1 0 1 1 2 0 1 1\nmg 1 0.5\nbevel "
+        "on\nc_interp on\nd_interp on\nlod 1\nusemap off\nmaplib a\nshadow_obj a\ntrace_obj a\nctech cparm "
+        "1\nstech cspace 1\ncall a.obj\ncsh -echo\nbsp 1\nbzp 1\ncdc 1\ncdp 1\nres 1 1\n";
+    const auto kinds = static_cast<std::size_t>(std::count(unused.begin(), unused.end(), '\n'));
+    const Mesh mesh = load_obj(folder.write("mesh.obj", std::string(corners) + unused + unused +
+                                                            "o a\ng a\ns 1\nmtllib a\nusemtl "
+                                                            "a\nfo 1 2 3\n"),
+                               FileNormals::use, &notices);
+    CHECK(mesh.triangles.size() == 1);
+    CHECK(notices.size() == kinds);
+    for (const std::string& notice : notices) CHECK_MESSAGE(notice.ends_with("\" is skipped (2 times)"), notice);
+    CHECK_MESSAGE(contains(notices.at(6), "mesh.obj:11: the statement \"l\""), notices[6]);
+}
+
+TEST_CASE("OBJ lines end in LF, CRLF or CR") {
+    const std::string lines[] = {"\xef\xbb\xbfv 0 0 0", "v 1 0 \\", "0", "", "v 0 1 0 # corner", "f 1 2 3"};
+    for (const std::string end : {"\n", "\r\n", "\r"}) {
+        std::string text;
+        for (const std::string& line : lines) text += line + end;
+        const Mesh mesh = parse(text);
+        CHECK(mesh.positions == std::vector<DVec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+        CHECK(contains(message_of([&] { parse(text + "f 1 2 9"); }), "mesh.obj:7: vertex 9 does not exist"));
+    }
+    CHECK(parse("v 0 0 0\nv 1 0 0\rv 0 1 0\r\nf 1 2 3\r").triangles.size() == 1);
+}
+
+TEST_CASE("OBJ corners without a normal get one from the triangles around them") {
+    // Two squares that meet at a right angle in the y axis; the second one has no normals, or some of length 0.
+    const std::string text =
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 0 1 1\nvn 0 0 1\nvn 0 0 0\nf 1//1 2//1 3//1 4//1\n";
+    const Mesh without = parse(text + "f 5 1 4 6\n"), zero = parse(text + "f 5//2 1//2 4//2 6//2\n");
+    CHECK(without.positions.size() == 8);
+    for (const Mesh& mesh : {without, zero})
+        for (std::size_t i = 0; i < 8; ++i)
+            CHECK(glm::length(mesh.normals[i] - (i < 4 ? DVec3(0, 0, 1) : DVec3(1, 0, 0))) < 1e-15);
+    // The normals that there are still decide the front.
+    const Mesh turned = parse(std::string(corners) + "vn 0 0 -1\nf 1//1 2 3\n");
+    CHECK(turned.triangles == std::vector<Triangle>{{0, 2, 1}});
+    CHECK(turned.normals == std::vector<DVec3>(3, DVec3(0, 0, -1)));
+}
+
 TEST_CASE("malformed OBJ files are refused with the line") {
     const std::string v = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
     struct Case {
@@ -81,14 +171,13 @@ TEST_CASE("malformed OBJ files are refused with the line") {
         {v + "f 1 2 -4", "mesh.obj:4: vertex -4 does not exist"},
         {v + "f 1 2 99999999999999999999", "mesh.obj:4: \"99999999999999999999\" is not an index"},
         {v + "f 1 2 3x", "mesh.obj:4: \"3x\" is not an index"},
-        {v + "f 1 2 3/", "mesh.obj:4: \"3/\" is not a corner"},
+        {v + "f 1 2 3///", "mesh.obj:4: \"3///\" is not a corner"},
+        {v + "f 1 2 //", "mesh.obj:4: \"//\" is not a corner"},
         {v + "f 1 2 3/1", "mesh.obj:4: texture coordinate 1 does not exist: 0 are"},
         {v + "f 1 2 3//1", "mesh.obj:4: normal 1 does not exist"},
         {v + "f 1 2 /1/1", "is not a corner"},
         {v + "vn 0 0 1\nf 1/1/1/1 2 3", "mesh.obj:5: "},
         {v + "vt 1\nvn 0 0 1\nf 1/1/1/1 2 3", "mesh.obj:6: \"1/1/1/1\" is not a corner"},
-        {v + "vn 0 0 1\nf 1//1 2//1 3", "mesh.obj:5: some corners have a normal and some have none"},
-        {v + "vn 0 0 0\nf 1//1 2//1 3//1", "mesh.obj:5: normal 1 has no direction"},
         {"v 0 0\n", "mesh.obj:1: \"v\" takes 3 to 7 numbers, not 2"},
         {"v 0 0 nan\n", "mesh.obj:1: \"nan\" is not a finite number"},
         {"v 0 0 inf\n", "mesh.obj:1: \"inf\" is not a finite number"},
@@ -98,7 +187,9 @@ TEST_CASE("malformed OBJ files are refused with the line") {
         {"v 0 0 0\n\nv \\\n 1 \\\n 2\nv 1 2 z", "mesh.obj:3: \"v\" takes 3 to 7 numbers, not 2"},
         {"v 0 0 0\nv 1 \\\n 2 3\nv 1 2 z", "mesh.obj:4: \"z\" is not"},
         {"vn 1 2 3 4\n", "mesh.obj:1: \"vn\" takes 3 numbers, not 4"},
-        {"cstype bezier\n", "mesh.obj:1: unknown statement \"cstype\""},
+        {"v 0 0 0\rv 1 0 x\r", "mesh.obj:2: \"x\" is not a finite number"},
+        {"cstype bezier\n", "mesh.obj: contains no faces"},
+        {"CSTYPE bezier\n", "mesh.obj:1: unknown statement \"CSTYPE\""},
         {std::string("\x7f"
                      "ELF\x02\x01\0\0",
                      8),

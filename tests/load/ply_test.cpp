@@ -106,6 +106,83 @@ TEST_CASE("binary PLY files are read in both byte orders and all types") {
                    "face 0: the file ends too early"));
 }
 
+TEST_CASE("the lists of a PLY file are of any type") {
+    for (const bool big : {false, true}) {
+        const std::string files[] = {binary<float, std::uint8_t, float>("float", "uchar", "float", big),
+                                     binary<float, float, double>("float", "float", "double", big),
+                                     binary<double, double, std::uint8_t>("double", "float64", "uchar", big)};
+        for (const std::string& file : files)
+            CHECK(parse(file).triangles == std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}});
+    }
+}
+
+TEST_CASE("the faces of a PLY file may come before the vertices, and lines may end in CR") {
+    for (const std::string order : {"fv", "vf"})
+        for (const std::string end : {"\n", "\r\n", "\r"})
+            for (const bool is_binary : {false, true}) {
+                std::string text =
+                    "\xef\xbb\xbfply\nformat " + std::string(is_binary ? "binary_little_endian" : "ascii") + " 1.0\n";
+                std::string data;
+                for (const char element : order) {
+                    text += element == 'f' ? "element face 1\nproperty list uchar uchar vertex_index\n"
+                                           : "element vertex 4\nproperty uchar x\nproperty uchar y\nproperty uchar z\n";
+                    // The first byte of binary data may look like the end of a line.
+                    if (is_binary)
+                        data +=
+                            element == 'f' ? std::string("\3\0\1\3", 4) : std::string("\n\0\0\1\n\0\1\1\0\0\1\1", 12);
+                    else data += element == 'f' ? "3 0 1 3\n" : "10 0 0\n1 10 0\n1 1 0\n0 1 1\n";
+                }
+                text += "end_header\n";
+                if (!is_binary) text += data;
+                for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += end.size())
+                    text.replace(at, 1, end);
+                if (is_binary) text += data;
+                const Mesh mesh = parse(text);
+                CHECK(mesh.positions == std::vector<DVec3>{{10, 0, 0}, {1, 10, 0}, {1, 1, 0}, {0, 1, 1}});
+                CHECK(mesh.triangles == std::vector<Triangle>{{0, 1, 3}});
+            }
+}
+
+TEST_CASE("the strips of a PLY file become triangles that face one way") {
+    const std::string vertices =
+        "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n";
+    const std::string data = "0 0 0\n0 1 0\n1 0 0\n1 1 0\n2 0 0\n2 1 0\n";
+    const std::string strips = "element tristrips 2\nproperty list int int vertex_indices\nend_header\n";
+    CHECK(parse(vertices + strips + data + "7 2 1 0 -1 2 3 1\n3 4 3 2\n").triangles ==
+          std::vector<Triangle>{{2, 1, 0}, {2, 3, 1}, {4, 3, 2}});
+    CHECK(parse(vertices + strips + data + "6 0 2 1 3 -1 -1\n4 2 4 3 5\n").triangles ==
+          std::vector<Triangle>{{0, 2, 1}, {1, 2, 3}, {2, 4, 3}, {3, 4, 5}});
+    // A repeated corner turns the strip.
+    CHECK(parse(vertices + strips + data + "0\n6 0 2 1 1 3 2\n").triangles ==
+          std::vector<Triangle>{{0, 2, 1}, {3, 1, 2}});
+}
+
+TEST_CASE("what a PLY file holds besides is skipped, with a notice for each element") {
+    const Folder folder;
+    const auto path = folder.write(
+        "mesh.ply", head +
+                        "property uchar red\nelement edge 2\nproperty int vertex1\nproperty int vertex2\nelement "
+                        "nothing 0\nproperty int a\n" +
+                        faces + "0 0 0 9\n1 0 0 9\n0 1 0 9\n0 1\n1 2\n3 0 1 2\n");
+    Notices notices;
+    CHECK(load_ply(path, FileNormals::use, &notices).triangles.size() == 1);
+    CHECK(notices == Notices{path.string() + ":8: the element \"edge\" is skipped"});
+}
+
+TEST_CASE("a normal of length 0 in a PLY file is computed from the triangles around it") {
+    const Folder folder;
+    const auto path = folder.write("mesh.ply", head + "property float nx\nproperty float ny\nproperty float nz\n" +
+                                                   faces + "0 0 0 0 0 0\n1 0 0 0 0 -1\n0 1 0 0 0 -1\n3 0 1 2\n");
+    Notices notices;
+    const Mesh mesh = load_ply(path, FileNormals::use, &notices);
+    CHECK(mesh.normals == std::vector<DVec3>(3, DVec3(0, 0, -1)));
+    CHECK(mesh.triangles == std::vector<Triangle>{{0, 2, 1}});
+    REQUIRE(notices.size() == 1);
+    CHECK_MESSAGE(contains(notices[0], "mesh.ply:16: face 0: the corner has no normal or one of length 0"), notices[0]);
+    CHECK(load_ply(path, FileNormals::ignore, &notices).normals.empty());
+    CHECK(notices.size() == 1);
+}
+
 TEST_CASE("malformed PLY files are refused with the line") {
     const std::string data = "0 0 0\n1 0 0\n0 1 0\n";
     struct Case {
@@ -128,15 +205,15 @@ TEST_CASE("malformed PLY files are refused with the line") {
         {"ply\nelement vertex 1\nproperty float\n", "mesh.ply:3: the property has no name"},
         {"ply\nelement vertex 1\nproperty float x\nproperty float x\n",
          "mesh.ply:4: the property \"x\" is given twice"},
-        {"ply\nelement face 1\nproperty list float int vertex_index\n",
-         "mesh.ply:3: the length of a list must be an integer"},
         {"ply\nfoo\n", "mesh.ply:2: unknown statement \"foo\""},
         {"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n0\n",
          "mesh.ply:3: the vertices have no y"},
         {head + "end_header\n" + data, "mesh.ply: contains no faces"},
-        {head + "element face 1\nend_header\n" + data, "mesh.ply:7: the faces have no list of integers"},
-        {head + "element face 1\nproperty int vertex_index\nend_header\n" + data, "mesh.ply:7: the faces have no list"},
-        {"ply\nformat ascii 1.0\n" + faces + "3 0 1 2\n", "mesh.ply:3: there are no vertices before the faces"},
+        {head + "element face 1\nend_header\n" + data,
+         "mesh.ply:7: the element \"face\" has no list called \"vertex_indices\""},
+        {head + "element face 1\nproperty int vertex_index\nend_header\n" + data,
+         "mesh.ply:7: the element \"face\" has no list"},
+        {"ply\nformat ascii 1.0\n" + faces + "3 0 1 2\n", "mesh.ply:3: there are no vertices"},
         {head + faces + data, "mesh.ply:13: face 0: the file ends too early"},
         {head + faces + data + "3 0 1\n", "mesh.ply:14: face 0: the file ends too early"},
         {head + faces + data + "3 0 1 3\n", "mesh.ply:13: face 0: vertex 3 does not exist: there are 3"},
@@ -147,9 +224,25 @@ TEST_CASE("malformed PLY files are refused with the line") {
         {head + faces + data + "3 0 1 2\nextra", "mesh.ply:14: the file goes on after its last element"},
         {head + faces + "0 0 0\n1 0 nan\n0 1 0\n3 0 1 2\n", "mesh.ply:11: vertex 1: \"nan\" is not a finite number"},
         {head + faces + "0 0 0\n1 0 inf\n0 1 0\n3 0 1 2\n", "mesh.ply:11: vertex 1: \"inf\" is not a finite number"},
-        {head + "property float nx\nproperty float ny\nproperty float nz\n" + faces +
-             "0 0 0 0 0 0\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n",
-         "mesh.ply:16: face 0: the normal of vertex 0 has no direction"},
+        {head + "element face 1\nproperty list uchar float vertex_index\nend_header\n" + data + "3 0 1 1.5\n",
+         "mesh.ply:13: face 0: vertex 1.5 does not exist"},
+        {head + "element face 1\nproperty list uchar double vertex_index\nend_header\n" + data + "3 0 1 1e300\n",
+         "mesh.ply:13: face 0: vertex 1e+300 does not exist"},
+        {head + "element face 1\nproperty list float int vertex_index\nend_header\n" + data + "3.5 0 1 2\n",
+         "mesh.ply:13: face 0: a list cannot have the length 3.5"},
+        {head + "element face 1\nproperty list char int vertex_index\nend_header\n" + data + "-3 0 1 2\n",
+         "mesh.ply:13: face 0: a list cannot have the length -3"},
+        {"ply\nformat ascii 1.0\nelement face 2\nproperty list uchar int vertex_index\nelement vertex 3\nproperty "
+         "float x\nproperty float y\nproperty float z\nend_header\n3 0 1 2\n3 0 1 3\n" +
+             data,
+         "mesh.ply:11: face 1: vertex 3 does not exist: there are 3"},
+        {head + "element tristrips 1\nproperty list int int vertex_indices\nend_header\n" + data + "4 0 1 -1 2\n",
+         "mesh.ply:13: tristrips 0: a face needs at least 3 corners, not 2"},
+        {head + "element tristrips 1\nproperty list int int vertex_indices\nend_header\n" + data + "3 0 1 -2\n",
+         "mesh.ply:13: tristrips 0: vertex -2 does not exist"},
+        {"ply\rformat ascii 1.0\relement vertex 1\rproperty float x\rproperty float y\rproperty float z\r"
+         "end_header\r0 0\ry\r",
+         "mesh.ply:9: vertex 0: \"y\" is not a finite number"},
         // Counts that would ask for terabytes.
         {"ply\nformat ascii 1.0\nelement vertex 999999999999\nproperty float x\nproperty float y\nproperty float z\n" +
              faces + data,

@@ -17,17 +17,18 @@ namespace lightswitch {
 /// Mitsuba's default, but for the clipping planes, which are then at 0 and infinity. File names are relative to the
 /// scene file.
 ///
-/// Throws `Error` with file, line and element for everything that it cannot honour: nothing is ignored unseen. Thread
-/// safe.
+/// Throws `Error` with file, line and element for everything that it cannot honour. Only mesh files may hold what is
+/// skipped or guessed, which `notices` tells (see `load_obj` and `load_ply`). Thread safe.
 LibraryDescription load_mitsuba(const std::filesystem::path& file,
-                                const std::map<std::string, std::string>& defines = {});
+                                const std::map<std::string, std::string>& defines = {}, Notices* notices = nullptr);
 
 namespace detail {
 
 class MitsubaReader {
 public:
-    MitsubaReader(const std::filesystem::path& path, const std::map<std::string, std::string>& defines)
-        : folder_(path.parent_path()), file_(path, defines) {
+    MitsubaReader(const std::filesystem::path& path, const std::map<std::string, std::string>& defines,
+                  Notices* notices)
+        : folder_(path.parent_path()), file_(path, defines), notices_(notices) {
         scene_.name = path.stem().string();
     }
 
@@ -116,11 +117,16 @@ private:
         element.boolean("flip_tex_coords", false);  // there are no textures
         const FileNormals use = flat ? FileNormals::ignore : FileNormals::use;
         Mesh mesh;
+        Notices notices;
         try {
-            mesh = element.type() == "obj" ? load_obj(folder_ / *name, use) : load_ply(folder_ / *name, use);
+            mesh = element.type() == "obj" ? load_obj(folder_ / *name, use, &notices)
+                                           : load_ply(folder_ / *name, use, &notices);
         } catch (const Error& error) {
             fail(element.origin(), error.what());
         }
+        if (notices_ != nullptr)
+            for (std::string& notice : notices)
+                if (noticed_.insert(notice).second) notices_->push_back(std::move(notice));
 
         const bool has_normals = !mesh.normals.empty();
         mesh = mesh.transformed(to_world);
@@ -187,6 +193,8 @@ private:
 
     std::filesystem::path folder_;
     XmlFile file_;
+    Notices* notices_;
+    std::set<std::string> noticed_;  ///< several shapes may use one file
     LibraryDescription scene_;
     std::map<std::ptrdiff_t, std::size_t> materials_;
     std::optional<std::size_t> grey_, black_;
@@ -196,8 +204,8 @@ private:
 }  // namespace detail
 
 inline LibraryDescription load_mitsuba(const std::filesystem::path& file,
-                                       const std::map<std::string, std::string>& defines) {
-    return detail::MitsubaReader(file, defines).read();
+                                       const std::map<std::string, std::string>& defines, Notices* notices) {
+    return detail::MitsubaReader(file, defines, notices).read();
 }
 
 }  // namespace lightswitch

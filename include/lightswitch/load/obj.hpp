@@ -2,9 +2,9 @@
 
 // Wavefront OBJ: triangles and polygons with optional vertex normals.
 
-#include <lightswitch/core/error.hpp>
 #include <lightswitch/film/file.hpp>
 #include <lightswitch/load/mesh_file.hpp>
+#include <lightswitch/load/polygon.hpp>
 #include <lightswitch/load/text.hpp>
 
 #include <filesystem>
@@ -14,14 +14,19 @@ namespace lightswitch {
 
 /// Reads a Wavefront OBJ file of at most 1 GiB, in double precision.
 ///
-/// Polygons become fans around their first corner. Corners are one vertex when they agree in position, texture
-/// coordinate and normal, so that normals computed by `Mesh::smooth` keep an edge where the texture has a seam (as in
-/// Mitsuba 3.9); with `FileNormals::ignore`, when they agree in position. Where the file's normals point is the front.
-/// Groups, materials, texture coordinates, vertex colours, lines and points are skipped.
+/// Convex polygons become fans around their first corner, others are cut into triangles that cover the same area.
+/// Corners are one vertex when they agree in position, texture coordinate and normal, so that normals computed by
+/// `Mesh::smooth` keep an edge where the texture has a seam (as in Mitsuba 3.9); with `FileNormals::ignore`, when they
+/// agree in position. Where the file's normals point is the front; where a corner has none, or one of length 0, while
+/// others have, it gets what `Mesh::smooth` computes. Groups, materials, texture coordinates and vertex colours are
+/// skipped.
 ///
-/// Throws `Error` with the line for anything malformed, an index out of range, a normal of length 0 in use, or normals
-/// at some corners only, and when there is no face. Thread safe.
-Mesh load_obj(const std::filesystem::path& path, FileNormals normals = FileNormals::use);
+/// `notices` gets a line for each kind of other statement that is skipped, such as `l` and `curv`, for polygons that
+/// cross themselves and for normals that are computed because they are missing.
+///
+/// Throws `Error` with the line for anything malformed, an index out of range, or a statement that OBJ does not have,
+/// and when there is no face. Thread safe.
+Mesh load_obj(const std::filesystem::path& path, FileNormals normals = FileNormals::use, Notices* notices = nullptr);
 
 namespace detail {
 
@@ -29,11 +34,19 @@ class ObjReader {
 public:
     ObjReader(const std::filesystem::path& path, FileNormals use) : origin_{path.string(), 0, {}}, use_(use) {}
 
-    Mesh read(std::string_view text) {
+    Mesh read(std::string_view text, Notices* notices) {
+        text = without_byte_order_mark(text);
         while (!text.empty()) statement(next_statement(text));
         origin_.line = 0;
         if (mesh_.triangles.empty()) fail(origin_, "contains no faces");
-        mesh_.face_along_normals();
+        if (!mesh_.normals.empty()) mesh_.normals.resize(mesh_.positions.size(), DVec3(0));
+        for (std::size_t v = 0; v < mesh_.normals.size(); ++v)
+            if (mesh_.normals[v] == DVec3(0)) {
+                origin_.line = lines_[v];
+                notices_.add(origin_, guessed_normal);
+            }
+        finish_normals(mesh_);
+        notices_.report(notices);
         return std::move(mesh_);
     }
 
@@ -57,11 +70,9 @@ private:
         origin_.line += skipped_lines_ + 1;
         skipped_lines_ = 0;
         while (true) {
-            const std::size_t end = std::min(text.find('\n'), text.size());
-            std::string_view line = text.substr(0, end);
-            text.remove_prefix(std::min(end + 1, text.size()));
+            std::string_view line = next_line(text);
             line = line.substr(0, line.find('#'));
-            line = line.substr(0, line.find_last_not_of(" \t\r") + 1);
+            line = line.substr(0, line.find_last_not_of(" \t") + 1);
             const bool continues = line.ends_with('\\');
             if (continues) line.remove_suffix(1);
             if (!continues && joined_.empty()) return line;
@@ -81,9 +92,11 @@ private:
         } else if (keyword == "vt") {
             vector(line, keyword, 1, 3);
             ++texture_coordinates_;
-        } else if (keyword == "f") {
+        } else if (keyword == "f" || keyword == "fo") {  // the same in old files
             face(line);
-        } else if (std::find(skipped.begin(), skipped.end(), keyword) == skipped.end()) {
+        } else if (std::find(skipped.begin(), skipped.end(), keyword) != skipped.end()) {
+            notices_.add(origin_, "the statement " + quote(keyword) + " is skipped");
+        } else if (std::find(meaningless.begin(), meaningless.end(), keyword) == meaningless.end()) {
             fail(origin_, "unknown statement " + quote(keyword));
         }
     }
@@ -104,18 +117,12 @@ private:
     }
 
     void face(std::string_view line) {
-        std::array<std::uint32_t, 3> triangle{};
-        int count = 0;
-        for (std::string_view word = next_word(line); !word.empty(); word = next_word(line)) {
-            const std::uint32_t vertex = corner(word);
-            if (count >= 2) {
-                triangle[2] = vertex;
-                mesh_.triangles.push_back(triangle);
-            }
-            triangle[count == 0 ? 0 : 1] = vertex;
-            ++count;
-        }
-        if (count < 3) fail(origin_, "a face needs at least 3 corners, not " + std::to_string(count));
+        corners_.clear();
+        for (std::string_view word = next_word(line); !word.empty(); word = next_word(line))
+            corners_.push_back(corner(word));
+        if (corners_.size() < 3)
+            fail(origin_, "a face needs at least 3 corners, not " + std::to_string(corners_.size()));
+        if (!cutter_.cut(corners_, mesh_)) notices_.add(origin_, crossing_polygon);
     }
 
     std::uint32_t corner(std::string_view word) {
@@ -126,8 +133,7 @@ private:
         for (std::size_t i = 0;; ++i) {
             const std::size_t slash = rest.find('/');
             const std::string_view part = rest.substr(0, slash);
-            const bool may_be_empty = i == 1 && slash != std::string_view::npos;
-            if (i == 3 || (part.empty() && !may_be_empty))
+            if (i == 3 || (i == 0 && part.empty()))
                 fail(origin_, quote(word) + " is not a corner (v, v/vt, v//vn or v/vt/vn)");
             if (!part.empty()) key[i] = index(part, sizes[i], names[i]);
             if (slash == std::string_view::npos) break;
@@ -150,20 +156,22 @@ private:
         const auto [entry, is_new] = vertices_.try_emplace(key, static_cast<std::uint32_t>(mesh_.positions.size()));
         if (!is_new) return entry->second;
 
-        const bool has_normal = key[2] >= 0;
-        if (!mesh_.positions.empty() && has_normal == mesh_.normals.empty())
-            fail(origin_, "some corners have a normal and some have none: give all of them normals, or none");
-        mesh_.positions.push_back(positions_[static_cast<std::size_t>(key[0])]);
-        if (has_normal) {
-            const DVec3& normal = normals_[static_cast<std::size_t>(key[2])];
-            if (normal == DVec3(0)) fail(origin_, "normal " + std::to_string(key[2] + 1) + " has no direction");
-            mesh_.normals.push_back(normal);
+        if (key[2] >= 0) {
+            mesh_.normals.resize(mesh_.positions.size(), DVec3(0));
+            mesh_.normals.push_back(normals_[static_cast<std::size_t>(key[2])]);
         }
+        mesh_.positions.push_back(positions_[static_cast<std::size_t>(key[0])]);
+        lines_.push_back(origin_.line);
         return entry->second;
     }
 
-    static constexpr std::array<std::string_view, 13> skipped{
-        "o", "g", "s", "mg", "usemtl", "usemap", "mtllib", "lod", "bevel", "l", "p", "shadow_obj", "trace_obj"};
+    /// In nearly every file, and without meaning here.
+    static constexpr std::array<std::string_view, 5> meaningless{"o", "g", "s", "usemtl", "mtllib"};
+    static constexpr auto skipped = std::to_array<std::string_view>(
+        {"p",     "l",        "vp",       "cstype", "deg",  "bmat", "step",       "curv",     "curv2",
+         "surf",  "parm",     "trim",     "hole",   "scrv", "sp",   "end",        "con",      "mg",
+         "bevel", "lod",      "usemap",   "maplib", "call", "csh",  "ctech",      "stech",    "bsp",
+         "bzp",   "c_interp", "d_interp", "cdc",    "cdp",  "res",  "shadow_obj", "trace_obj"});
 
     Origin origin_;
     FileNormals use_;
@@ -172,14 +180,18 @@ private:
     std::vector<DVec3> positions_, normals_;
     std::size_t texture_coordinates_ = 0;
     std::unordered_map<Corner, std::uint32_t, CornerHash> vertices_;
+    std::vector<std::uint32_t> corners_;
+    PolygonCutter cutter_;
     Mesh mesh_;
+    std::vector<int> lines_;  ///< where each of the mesh's positions is first used
+    FileNotices notices_;
 };
 
 }  // namespace detail
 
-inline Mesh load_obj(const std::filesystem::path& path, FileNormals normals) {
+inline Mesh load_obj(const std::filesystem::path& path, FileNormals normals, Notices* notices) {
     const std::string text = read_file(path, detail::max_mesh_bytes);
-    return detail::ObjReader(path, normals).read(text);
+    return detail::ObjReader(path, normals).read(text, notices);
 }
 
 }  // namespace lightswitch

@@ -5,6 +5,7 @@
 #include <lightswitch/film/file.hpp>
 #include <lightswitch/load/mesh_file.hpp>
 #include <lightswitch/load/ply_header.hpp>
+#include <lightswitch/load/polygon.hpp>
 
 #include <filesystem>
 
@@ -12,14 +13,19 @@ namespace lightswitch {
 
 /// Reads a PLY file of at most 1 GiB: ASCII, or binary with either byte order.
 ///
-/// The element `vertex` gives x, y, z and perhaps nx, ny, nz, in any scalar type; the element `face` gives the list
-/// `vertex_indices` or `vertex_index`. Polygons become fans around their first corner. Where the file's normals point
-/// is the front. Everything else in the file is skipped.
+/// The element `vertex` gives x, y, z and perhaps nx, ny, nz; the elements `face` and `tristrips`, before or after it,
+/// give the list `vertex_indices` or `vertex_index`; all in any type. In a strip, -1 begins the next one. Convex
+/// polygons become fans around their first corner, others are cut into triangles that cover the same area. Where the
+/// file's normals point is the front; one of length 0 in use is replaced by what `Mesh::smooth` computes. Everything
+/// else in the file is skipped.
+///
+/// `notices` gets a line for each other element that is skipped, for polygons that cross themselves and for normals of
+/// length 0 in use.
 ///
 /// Throws `Error` with the line (ASCII) or the number of the element from 0 (binary) for anything malformed: a file
-/// that is shorter or longer than its header says, a number that is not finite, an index out of range, a normal of
-/// length 0 in use, or when there is no face. Thread safe.
-Mesh load_ply(const std::filesystem::path& path, FileNormals normals = FileNormals::use);
+/// that is shorter or longer than its header says, a number that is not finite, an index out of range or not whole, or
+/// when there is no face. Thread safe.
+Mesh load_ply(const std::filesystem::path& path, FileNormals normals = FileNormals::use, Notices* notices = nullptr);
 
 namespace detail {
 
@@ -27,7 +33,11 @@ namespace detail {
 class PlyData {
 public:
     PlyData(std::string_view bytes, const PlyHeader& header, std::string file)
-        : rest_(bytes.substr(header.bytes)), format_(header.format), line_(header.lines + 1), file_(std::move(file)) {}
+        : rest_(bytes.substr(header.bytes)),
+          format_(header.format),
+          line_end_(header.line_end),
+          line_(header.lines + 1),
+          file_(std::move(file)) {}
 
     /// Names the element that is read next, for errors.
     void begin(const PlyElement& element, std::size_t index) {
@@ -37,6 +47,12 @@ public:
 
     /// The next value, which is finite and fits its type.
     double next(PlyType type) { return format_ == PlyHeader::Format::ascii ? next_word_as(type) : next_binary(type); }
+    /// The length of the list that is next.
+    double next_length(PlyType type) {
+        const double length = next(type);
+        if (length < 0 || length != std::floor(length)) error("a list cannot have the length " + shown(length));
+        return length;
+    }
     /// Passes over the next value, whatever it is.
     void skip(PlyType type) {
         if (format_ == PlyHeader::Format::ascii) next_word_of_file();
@@ -63,16 +79,18 @@ public:
         error("the file goes on after its last element");
     }
 
-    [[noreturn]] void error(const std::string& what) const {
+    /// The element that is being read.
+    Origin place() const {
         const bool ascii = format_ == PlyHeader::Format::ascii;
-        fail({file_, ascii ? line_ : 0, {}},
-             element_ == nullptr ? what : element_->name + " " + std::to_string(index_) + ": " + what);
+        return {file_, ascii ? line_ : 0, element_ == nullptr ? "" : element_->name + " " + std::to_string(index_)};
     }
+    [[noreturn]] void error(const std::string& what) const { fail(place(), what); }
 
 private:
     std::string_view word() {
         const std::size_t begin = std::min(rest_.find_first_not_of(" \t\r\n"), rest_.size());
-        line_ += static_cast<int>(std::count(rest_.begin(), rest_.begin() + static_cast<std::ptrdiff_t>(begin), '\n'));
+        line_ +=
+            static_cast<int>(std::count(rest_.begin(), rest_.begin() + static_cast<std::ptrdiff_t>(begin), line_end_));
         return next_word(rest_);
     }
 
@@ -135,6 +153,7 @@ private:
 
     std::string_view rest_;
     PlyHeader::Format format_;
+    char line_end_;
     int line_;
     std::string file_;
     const PlyElement* element_ = nullptr;
@@ -149,16 +168,31 @@ public:
           origin_{std::move(file), 0, {}},
           use_(use) {}
 
-    Mesh read() {
+    Mesh read(Notices* notices) {
+        std::vector<std::pair<const PlyElement*, PlyData>> before_vertices;
         for (const PlyElement& element : header_.elements) {
+            const bool is_faces = element.name == "face" || element.name == "tristrips";
             data_.check_count(element);
-            if (element.name == "vertex") vertices(element);
-            else if (element.name == "face") faces(element);
-            else skip(element);
+            if (element.name == "vertex") {
+                vertices(element);
+            } else if (is_faces && !mesh_.positions.empty()) {
+                faces(element);
+            } else {
+                if (is_faces) before_vertices.emplace_back(&element, data_);
+                else if (element.count > 0)
+                    notices_.add({origin_.file, element.line, {}},
+                                 "the element " + quote(element.name) + " is skipped");
+                skip(element);
+            }
         }
         data_.check_end();
+        for (const auto& [element, data] : before_vertices) {
+            data_ = data;
+            faces(*element);
+        }
         if (mesh_.triangles.empty()) fail(origin_, "contains no faces");
-        mesh_.face_along_normals();
+        finish_normals(mesh_);
+        notices_.report(notices);
         return std::move(mesh_);
     }
 
@@ -192,43 +226,63 @@ private:
     void faces(const PlyElement& element) {
         const auto place =
             element.find("vertex_indices") ? element.find("vertex_indices") : element.find("vertex_index");
-        if (!place || !element.properties[*place].count_type || element.properties[*place].type >= PlyType::float32)
-            fail({origin_.file, element.line, {}}, "the faces have no list of integers called \"vertex_indices\"");
-        if (mesh_.positions.empty()) fail({origin_.file, element.line, {}}, "there are no vertices before the faces");
+        const Origin header{origin_.file, element.line, {}};
+        if (!place || !element.properties[*place].count_type)
+            fail(header, "the element " + quote(element.name) + " has no list called \"vertex_indices\"");
+        if (mesh_.positions.empty()) fail(header, "there are no vertices");
 
-        std::vector<bool> used(mesh_.positions.size(), false);
         for (std::size_t i = 0; i < element.count; ++i) {
             data_.begin(element, i);
             for (std::size_t p = 0; p < element.properties.size(); ++p)
-                if (p == *place) polygon(element.properties[p], used);
-                else skip(element.properties[p]);
+                if (p != *place) skip(element.properties[p]);
+                else if (element.name == "face") polygon(element.properties[p]);
+                else strips(element.properties[p]);
         }
-        // A normal of length 0 is common where no face uses the vertex; any direction will do there.
-        for (std::size_t v = 0; v < mesh_.normals.size(); ++v)
-            if (!used[v]) mesh_.normals[v] = DVec3(1, 0, 0);
     }
 
-    void polygon(const PlyProperty& property, std::vector<bool>& used) {
-        const double corners = data_.next(*property.count_type);
-        if (corners < 3)
-            data_.error("a face needs at least 3 corners, not " + std::to_string(static_cast<int>(corners)));
-        std::array<std::uint32_t, 3> triangle{};
-        for (double c = 0; c < corners; ++c) {
+    void polygon(const PlyProperty& property) {
+        const double length = data_.next_length(*property.count_type);
+        corners_.clear();
+        for (double c = 0; c < length; ++c) corners_.push_back(vertex(data_.next(property.type)));
+        check_corners();
+        if (!cutter_.cut(corners_, mesh_)) notices_.add(data_.place(), crossing_polygon);
+    }
+
+    void strips(const PlyProperty& property) {
+        const double length = data_.next_length(*property.count_type);
+        corners_.clear();
+        for (double c = 0; c < length; ++c) {
             const double index = data_.next(property.type);
-            if (index < 0 || index >= static_cast<double>(mesh_.positions.size()))
-                data_.error("vertex " + std::to_string(static_cast<std::int64_t>(index)) +
-                            " does not exist: there are " + std::to_string(mesh_.positions.size()) +
-                            " (counted from 0)");
-            const auto vertex = static_cast<std::uint32_t>(index);
-            if (!mesh_.normals.empty() && mesh_.normals[vertex] == DVec3(0))
-                data_.error("the normal of vertex " + std::to_string(vertex) + " has no direction");
-            used[vertex] = true;
-            if (c >= 2) {
-                triangle[2] = vertex;
-                mesh_.triangles.push_back(triangle);
-            }
-            triangle[c == 0 ? 0 : 1] = vertex;
+            if (index != -1) corners_.push_back(vertex(index));
+            else strip();
         }
+        strip();
+    }
+
+    /// Every second triangle of a strip has its corners in reverse. Those that repeat a corner only turn the strip.
+    void strip() {
+        if (!corners_.empty()) check_corners();
+        for (std::size_t i = 2; i < corners_.size(); ++i) {
+            const std::uint32_t a = corners_[i - 2], b = corners_[i - 1], c = corners_[i];
+            if (a == b || b == c || c == a) continue;
+            if (i % 2 == 0) mesh_.triangles.push_back({a, b, c});
+            else mesh_.triangles.push_back({b, a, c});
+        }
+        corners_.clear();
+    }
+
+    void check_corners() const {
+        if (corners_.size() < 3) data_.error("a face needs at least 3 corners, not " + std::to_string(corners_.size()));
+    }
+
+    std::uint32_t vertex(double index) {
+        const auto count = static_cast<double>(mesh_.positions.size());
+        if (!(index >= 0 && index < count && index == std::floor(index)))
+            data_.error("vertex " + shown(index) + " does not exist: there are " +
+                        std::to_string(mesh_.positions.size()) + " (counted from 0)");
+        const auto result = static_cast<std::uint32_t>(index);
+        if (!mesh_.normals.empty() && mesh_.normals[result] == DVec3(0)) notices_.add(data_.place(), guessed_normal);
+        return result;
     }
 
     void skip(const PlyElement& element) {
@@ -240,8 +294,7 @@ private:
     }
 
     void skip(const PlyProperty& property) {
-        const double values = property.count_type ? data_.next(*property.count_type) : 1;
-        if (values < 0) data_.error("a list has a negative length");
+        const double values = property.count_type ? data_.next_length(*property.count_type) : 1;
         for (double i = 0; i < values; ++i) data_.skip(property.type);
     }
 
@@ -249,14 +302,17 @@ private:
     PlyData data_;
     Origin origin_;
     FileNormals use_;
+    std::vector<std::uint32_t> corners_;
+    PolygonCutter cutter_;
     Mesh mesh_;
+    FileNotices notices_;
 };
 
 }  // namespace detail
 
-inline Mesh load_ply(const std::filesystem::path& path, FileNormals normals) {
+inline Mesh load_ply(const std::filesystem::path& path, FileNormals normals, Notices* notices) {
     const std::string bytes = read_file(path, detail::max_mesh_bytes);
-    return detail::PlyReader(bytes, path.string(), normals).read();
+    return detail::PlyReader(detail::without_byte_order_mark(bytes), path.string(), normals).read(notices);
 }
 
 }  // namespace lightswitch

@@ -41,6 +41,7 @@ struct PlyHeader {
     std::vector<PlyElement> elements;
     std::size_t bytes = 0;  ///< length of the header, so where the data begin
     int lines = 0;
+    char line_end = '\n';  ///< '\r' in files of old Macintosh programs
 };
 
 class PlyHeaderReader {
@@ -48,10 +49,13 @@ public:
     explicit PlyHeaderReader(std::string file) : origin_{std::move(file), 0, {}} {}
 
     PlyHeader read(std::string_view text) {
+        // Only the first line can tell: after the last one, any byte may be the first of the data.
+        if (const std::size_t end = text.find_first_of("\r\n"); end != std::string_view::npos)
+            header_.line_end = text.substr(end, 2) == "\r\n" ? '\n' : text[end];
         bool has_format = false;
         for (bool ended = false; !ended;) {
             ++origin_.line;
-            const std::size_t end = text.find('\n', header_.bytes);
+            const std::size_t end = text.find(header_.line_end, header_.bytes);
             if (end == std::string_view::npos)
                 fail(origin_, origin_.line == 1 ? "is not a PLY file: it does not begin with \"ply\""
                                                 : "the file ends within the header: \"end_header\" is missing");
@@ -112,7 +116,6 @@ private:
         std::string_view word = next_word(line);
         if (word == "list") {
             result.count_type = type(next_word(line));
-            if (*result.count_type >= PlyType::float32) fail(origin_, "the length of a list must be an integer");
             word = next_word(line);
         }
         result.type = type(word);

@@ -3,6 +3,7 @@
 // What every loader needs: numbers, words, line numbers, and quotes of text that may be hostile.
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <charconv>
 #include <cstdint>
@@ -29,11 +30,19 @@ std::optional<std::int64_t> parse_integer(std::string_view word);
 /// Cuts the first word off `text`; empty at the end. Words are separated by any of `separators`.
 std::string_view next_word(std::string_view& text, std::string_view separators = " \t\r\n");
 
+/// Cuts the first line off `text`; its end (LF, CRLF or CR) is not part of it.
+std::string_view next_line(std::string_view& text);
+
+/// `text` without the mark that some programs begin UTF-8 with.
+std::string_view without_byte_order_mark(std::string_view text);
+
 /// `text` with A to Z replaced by a to z.
 std::string lower_case(std::string_view text);
 
 /// `text` fit for an error message: one line of printable ASCII, shortened when it is long.
 std::string shown(std::string_view text);
+/// `number` with as few digits as tell it from any other.
+std::string shown(double number);
 /// The same in double quotes.
 std::string quote(std::string_view text);
 
@@ -73,6 +82,20 @@ inline std::string_view next_word(std::string_view& text, std::string_view separ
     return word;
 }
 
+inline std::string_view next_line(std::string_view& text) {
+    const auto is_end = [](char c) { return c == '\n' || c == '\r'; };
+    const auto end = static_cast<std::size_t>(std::find_if(text.begin(), text.end(), is_end) - text.begin());
+    const std::string_view line = text.substr(0, end);
+    text.remove_prefix(end);
+    text.remove_prefix(text.starts_with("\r\n") ? 2 : std::min<std::size_t>(text.size(), 1));
+    return line;
+}
+
+inline std::string_view without_byte_order_mark(std::string_view text) {
+    constexpr std::string_view mark = "\xef\xbb\xbf";
+    return text.substr(text.starts_with(mark) ? mark.size() : 0);
+}
+
 inline std::string lower_case(std::string_view text) {
     std::string result(text);
     for (char& c : result)
@@ -86,6 +109,11 @@ inline std::string shown(std::string_view text) {
     for (char& c : result)
         if (c < ' ' || c > '~') c = '?';
     return text.size() > longest ? result + "..." : result;
+}
+
+inline std::string shown(double number) {
+    std::array<char, 32> digits;
+    return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr};
 }
 
 inline std::string quote(std::string_view text) { return "\"" + shown(text) + "\""; }

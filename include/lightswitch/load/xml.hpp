@@ -1,6 +1,6 @@
 #pragma once
 
-// A scene file's XML tree, with what Mitsuba adds to XML: `<default>` values and `$name`, and ids. The only header that
+// A scene file's XML tree, with what Mitsuba adds to XML: `<default>` values and `$name`, ids and `<alias>`. The only header that
 // includes pugixml.
 
 #include <lightswitch/film/file.hpp>
@@ -45,6 +45,7 @@ private:
     void prepare(pugi::xml_node node, int depth);
     std::string substituted(pugi::xml_node node, std::string_view value);
     void define(pugi::xml_node node);
+    void identify(pugi::xml_node node, const std::string& id, pugi::xml_node element);
 
     std::string file_, text_;
     LineIndex lines_;
@@ -129,13 +130,24 @@ inline void XmlFile::prepare(pugi::xml_node node, int depth) {
         if (const std::string_view value = attribute.value(); value.find('$') != std::string_view::npos)
             attribute.set_value(substituted(node, value).c_str());
     if (std::string_view(node.name()) == "default") define(node);
-    if (const auto id = node.attribute("id"); id && std::string_view(node.name()) != "ref") {
-        const auto [entry, is_new] = ids_.emplace(id.value(), node);
-        if (!is_new)
-            fail(origin(node), "the id " + quote(id.value()) + " is already taken in line " +
-                                   std::to_string(origin(entry->second).line));
+    const std::string id = node.attribute("id").value();
+    if (std::string_view(node.name()) == "alias") {
+        check_attributes(node, {"id", "as"});
+        check_childless(node);
+        if (!find(id)) fail(origin(node), "there is no element with the id " + quote(id) + " above");
+        identify(node, node.attribute("as").value(), find(id));
+    } else if (node.attribute("id") && std::string_view(node.name()) != "ref") {
+        identify(node, id, node);
     }
     for (const pugi::xml_node child : node.children()) prepare(child, depth + 1);
+}
+
+/// Lets `id`, which `node` gives, stand for `element`.
+inline void XmlFile::identify(pugi::xml_node node, const std::string& id, pugi::xml_node element) {
+    const auto [entry, is_new] = ids_.emplace(id, element);
+    if (!is_new)
+        fail(origin(node),
+             "the id " + quote(id) + " is already taken in line " + std::to_string(origin(entry->second).line));
 }
 
 inline void XmlFile::define(pugi::xml_node node) {

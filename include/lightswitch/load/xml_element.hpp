@@ -71,7 +71,7 @@ inline XmlElement::XmlElement(const XmlFile& file, pugi::xml_node node) : file_(
         objects{"bsdf", "shape", "emitter", "sensor", "film", "rfilter", "sampler", "integrator", "ref"};
     for (const pugi::xml_node child : node.children()) {
         const std::string_view tag = child.name();
-        if (child.type() != pugi::node_element || tag == "default") continue;
+        if (child.type() != pugi::node_element || tag == "default" || tag == "alias") continue;
         if (objects.contains(tag)) {
             objects_.push_back(child);
             continue;

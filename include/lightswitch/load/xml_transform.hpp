@@ -98,8 +98,11 @@ inline DMat4 read_transform_step(const XmlFile& file, pugi::xml_node node) {
         if (up == DVec3(0) && target != eye) up = any_tangent(glm::normalize(target - eye));
         try {
             result = CameraDescription::look_at(eye, target, up);
-        } catch (const Error& error) {
-            fail(file.origin(node), error.what());
+        } catch (const Error&) {  // which speaks of a camera
+            fail(file.origin(node),
+                 glm::length(target - eye) > 0
+                     ? "\"up\" is parallel to the way from \"origin\" to \"target\": give another one"
+                     : "\"target\" is at \"origin\": move one of them");
         }
     } else if (tag == "matrix") {
         file.check_attributes(node, {"value"});
