@@ -14,7 +14,10 @@
 #include <fcntl.h>
 #include <unistd.h>
 #include <array>
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
+#include <exception>
 #include <new>
 
 namespace lightswitch::program {
@@ -44,20 +47,24 @@ private:
 
 /// What CLI11 could not place: an option that is not known, or one word too many.
 void refuse_leftovers(const CLI::App& command) {
-    const std::vector<std::string> leftovers = command.remaining();
-    if (leftovers.empty()) return;
-    const auto option = std::find_if(leftovers.begin(), leftovers.end(),
+    std::vector<std::string> leftovers = command.remaining();
+    // The first "--" ends the options, and is not there for itself.
+    const auto end = std::find(leftovers.begin(), leftovers.end(), "--");
+    const auto option = std::find_if(leftovers.begin(), end,
                                      [](const std::string& word) { return word.size() > 1 && word[0] == '-'; });
+    const std::string unknown = option == end ? std::string() : *option;
+    if (end != leftovers.end()) leftovers.erase(end);
+    if (leftovers.empty()) return;
     const bool top = command.get_parent() == nullptr;
     const std::string prefix = top ? "" : command.get_name() + ": ";
     const std::string help = fmt::format("; see \"lightswitch {}--help\"", top ? "" : command.get_name() + " ");
-    if (option == leftovers.end())
+    if (unknown.empty())
         throw Error(fmt::format("{}there is no use for \"{}\"{}", prefix, leftovers[0], help));
     std::vector<std::string> names;
     for (const CLI::Option* known : command.get_options())
         for (const std::string& name : known->get_lnames()) names.push_back("--" + name);
     const std::vector<std::string_view> views(names.begin(), names.end());
-    const std::string word = option->substr(0, option->find('='));
+    const std::string word = unknown.substr(0, unknown.find('='));
     throw Error(fmt::format("{}there is no option \"{}\"{}{}", prefix, word, suggestion(word, views), help));
 }
 
@@ -141,12 +148,26 @@ void occupy_standard_streams() {
             _exit(user_error);
 }
 
+/// What no thread has caught: oneTBB throws so out of its own threads when it cannot start one more. An error like others.
+[[noreturn]] void end_by_uncaught() {
+    try {
+        if (const auto exception = std::current_exception()) std::rethrow_exception(exception);
+    } catch (const std::exception& error) {
+        print_error(error.what());
+        std::_Exit(user_error);
+    } catch (...) {
+    }
+    std::abort();
+}
+
 }  // namespace
 }  // namespace lightswitch::program
 
 int main(int argc, char** argv) {
     using namespace lightswitch::program;
     occupy_standard_streams();
+    std::signal(SIGXFSZ, SIG_IGN);  // a file that becomes too large is then a failed write, and an error
+    std::set_terminate(end_by_uncaught);
     try {
         const int status = run_command(argc, argv);
         if (std::fflush(stdout) != 0 || std::ferror(stdout)) {

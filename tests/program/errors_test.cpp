@@ -76,7 +76,7 @@ TEST_CASE("render: outputs that cannot be written") {
                       {{"render", "furnace", "-o", "missing/x.png"}, "the directory 'missing' does not exist"},
                       {{"render", "furnace", "-o", "x.jpg"}, "an image is one of .exr, .hdr, .pfm, .png"},
                       {{"render", "furnace", "-o", "x"}, "has no extension"},
-                      {{"render", "furnace", "-o", ""}, "the file has no name"},
+                      {{"render", "furnace", "-o", ""}, "--output: the name is empty"},
                       // Found out before the work, which would take for ever.
                       {render({"--spp", "2147483647", "-o", "missing/x.png"}), "does not exist"},
                       {render({"--stats", "missing/s.json"}), "the directory 'missing' does not exist"},

@@ -29,6 +29,7 @@ public:
     MitsubaReader(const std::filesystem::path& path, const std::map<std::string, std::string>& defines)
         : folder_(path.parent_path()), file_(path, defines) {
         scene_.name = path.stem().string();
+        scene_.files.push_back(path.string());
     }
 
     LibraryDescription read() {
@@ -115,9 +116,11 @@ private:
         const bool flat = element.boolean("face_normals", false);
         element.boolean("flip_tex_coords", false);  // there are no textures
         const FileNormals use = flat ? FileNormals::ignore : FileNormals::use;
+        const std::filesystem::path file = folder_ / *name;
+        scene_.files.push_back(file.string());
         Mesh mesh;
         try {
-            mesh = element.type() == "obj" ? load_obj(folder_ / *name, use) : load_ply(folder_ / *name, use);
+            mesh = element.type() == "obj" ? load_obj(file, use) : load_ply(file, use);
         } catch (const Error& error) {
             fail(element.origin(), error.what());
         }
