@@ -13,6 +13,7 @@
 
 #include <fcntl.h>
 #include <unistd.h>
+#include <algorithm>
 #include <array>
 #include <csignal>
 #include <cstdio>
@@ -45,21 +46,31 @@ private:
     static std::string usage(const char* arguments) { return fmt::format("Usage: lightswitch {}\n", arguments); }
 };
 
+/// The command line, last word first as CLI11 wants it. It looks for options even behind a "--" in places, so words there
+/// that begin with "-" are written as the file names that they are.
+std::vector<std::string> reversed_words(int argc, char** argv) {
+    std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+    const auto end = std::find(words.begin(), words.end(), "--");
+    for (auto word = end; word != words.end(); ++word)
+        if (word != end && word->starts_with('-')) word->insert(0, "./");
+    std::reverse(words.begin(), words.end());
+    return words;
+}
+
 /// What CLI11 could not place: an option that is not known, or one word too many.
 void refuse_leftovers(const CLI::App& command) {
     std::vector<std::string> leftovers = command.remaining();
     // The first "--" ends the options, and is not there for itself.
     const auto end = std::find(leftovers.begin(), leftovers.end(), "--");
-    const auto option = std::find_if(leftovers.begin(), end,
-                                     [](const std::string& word) { return word.size() > 1 && word[0] == '-'; });
+    const auto option =
+        std::find_if(leftovers.begin(), end, [](const std::string& word) { return word.size() > 1 && word[0] == '-'; });
     const std::string unknown = option == end ? std::string() : *option;
     if (end != leftovers.end()) leftovers.erase(end);
     if (leftovers.empty()) return;
     const bool top = command.get_parent() == nullptr;
     const std::string prefix = top ? "" : command.get_name() + ": ";
     const std::string help = fmt::format("; see \"lightswitch {}--help\"", top ? "" : command.get_name() + " ");
-    if (unknown.empty())
-        throw Error(fmt::format("{}there is no use for \"{}\"{}", prefix, leftovers[0], help));
+    if (unknown.empty()) throw Error(fmt::format("{}there is no use for \"{}\"{}", prefix, leftovers[0], help));
     std::vector<std::string> names;
     for (const CLI::Option* known : command.get_options())
         for (const std::string& name : known->get_lnames()) names.push_back("--" + name);
@@ -88,7 +99,8 @@ int run_command(int argc, char** argv) {
         "  lightswitch render cornell-box --method path-nee --spp 64 --output box.png --output box.exr\n"
         "  lightswitch compare box.exr reference.exr --output difference.png\n"
         "  lightswitch verify cornell-box --methods path-nee --reference path\n\n"
-        "\"lightswitch COMMAND --help\" explains the options of a command.");
+        "\"lightswitch COMMAND --help\" explains the options of a command. Behind \"--\" stand only files, also those\n"
+        "whose names begin with \"-\".");
 
     RenderOptions render_options;
     CompareOptions compare_options;
@@ -115,9 +127,10 @@ int run_command(int argc, char** argv) {
     if (!is_command && first[0] != '-')
         throw Error(fmt::format("there is no command \"{}\"{}; known are {}", first, suggestion(first, commands),
                                 list(commands)));
-    if (!is_command) app.allow_extras();
+    app.allow_extras();
+    app.require_subcommand(0, 1);  // a second name of a command is a word like others
     try {
-        app.parse(argc, argv);
+        app.parse(reversed_words(argc, argv));
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
         throw Error(explain(error));

@@ -47,10 +47,10 @@ std::string suggestion(std::string_view given, std::span<const std::string_view>
     if (nearest.empty() && word.size() > word.find_first_not_of('-') + 2) {  // a part of a name, or a name and more
         least = std::string::npos;
         for (const std::string_view candidate : known) {
-            const auto [shorter, longer] = std::minmax<std::string_view>(
-                word, candidate, [](std::string_view a, std::string_view b) { return a.size() < b.size(); });
-            const std::size_t distance = longer.size() - shorter.size();
-            if (longer.find(shorter) == std::string_view::npos || distance >= least) continue;
+            const bool part = candidate.find(word) != std::string_view::npos;
+            if (!part && word.find(candidate) == std::string::npos) continue;
+            const std::size_t distance = part ? candidate.size() - word.size() : word.size() - candidate.size();
+            if (distance >= least) continue;
             least = distance;
             nearest = candidate;
         }
