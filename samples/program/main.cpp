@@ -15,11 +15,14 @@
 #include <unistd.h>
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <new>
+#include <thread>
 
 namespace lightswitch::program {
 namespace {
@@ -163,6 +166,8 @@ void occupy_standard_streams() {
 
 /// What no thread has caught: oneTBB throws so out of its own threads when it cannot start one more. An error like others.
 [[noreturn]] void end_by_uncaught() {
+    static std::atomic_flag told;
+    if (told.test_and_set()) std::this_thread::sleep_for(std::chrono::seconds(1));  // another thread ends the program
     try {
         if (const auto exception = std::current_exception()) std::rethrow_exception(exception);
     } catch (const std::exception& error) {

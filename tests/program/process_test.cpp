@@ -4,6 +4,8 @@
 
 #include <lightswitch/film/image_io.hpp>
 
+#include <map>
+
 #include <sys/resource.h>
 #include <sys/stat.h>
 
@@ -88,9 +90,11 @@ TEST_CASE("no output replaces an input or another output, whatever the two are c
     const Workspace workspace;
     workspace.write("scene.xml", scene);
     workspace.write("mesh.obj", mesh);
-    for (int i = 1; i <= 3; ++i)
-        lightswitch::save(workspace / ("in" + std::to_string(i) + ".pfm"),
-                          lightswitch::Image(4, 4, lightswitch::Rgb(static_cast<float>(i))));
+    for (int i = 1; i <= 3; ++i) {
+        lightswitch::Image image(4, 4);
+        image(0, 0) = lightswitch::Rgb(static_cast<float>(i));
+        lightswitch::save(workspace / ("in" + std::to_string(i) + ".pfm"), image);
+    }
     std::filesystem::create_directory(workspace / "folder");
     std::filesystem::create_symlink("in1.pfm", workspace / "link.pfm");
     std::filesystem::create_hard_link(workspace / "in1.pfm", workspace / "hard.pfm");

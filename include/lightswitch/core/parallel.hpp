@@ -81,7 +81,7 @@ inline int allow_threads(int wanted) {
         int assured = 1;
         std::unique_ptr<tbb::global_control> limit;
     };
-    static Supply supply;
+    static Supply& supply = *new Supply;  // never destroyed: without the limit oneTBB would start threads at the very end
     constexpr int spare = 1;
     const std::lock_guard lock(supply.mutex);
     if (wanted > supply.assured && !supply.limit) {
