@@ -1,3 +1,4 @@
+#include "outputs.hpp"
 #include "program.hpp"
 
 #include <lightswitch/compare/comparison_report.hpp>
@@ -73,24 +74,27 @@ void write_difference(const CompareOptions& options, const Image& signed_differe
         for (Rgb& p : shown.pixels()) p = glm::abs(p);
     for (const auto& output : options.outputs) {
         if (!has_extension(output, ".png")) {
-            save(output, shown);
+            write_image(output, shown);
             continue;
         }
         using Map = FalseColorOptions::Map;
-        save(output, false_color(shown, {.map = options.absolute ? Map::sequential : Map::diverging,
-                                         .scale = options.scale,
-                                         .caption = caption}));
+        write_image(output, false_color(shown, {.map = options.absolute ? Map::sequential : Map::diverging,
+                                                .scale = options.scale,
+                                                .caption = caption}));
     }
 }
 
-/// Everything that can be known to be unwritable before the work begins.
 void check_outputs(const CompareOptions& options) {
+    Outputs outputs;
     for (const auto& output : options.outputs) {
-        check_writable(output);
+        outputs.add_image("--output", output);
         if (has_extension(output, ".hdr") && !options.absolute)
-            throw Error(output.string() + ": .hdr holds no negative values; use .exr or .pfm, or --absolute");
+            throw Error("--output: " + output.string() +
+                        ": .hdr holds no negative values; use .exr or .pfm, or --absolute");
     }
-    if (!options.report.empty()) check_file_writable(options.report);
+    outputs.add_file("--report", options.report);
+    outputs.refuse_inputs(options.images);
+    outputs.refuse_inputs({options.reference});
 }
 
 }  // namespace
@@ -112,7 +116,7 @@ int compare(const CompareOptions& options) {
         print_comparison(images[i], reference, differences[i]);
     }
     write_difference(options, differences.front(), caption(images.front(), reference, options.absolute));
-    if (!options.report.empty()) save_report(options.report, comparison_report(images, images.size() - 1));
+    if (!options.report.empty()) write_report(options.report, comparison_report(images, images.size() - 1));
     return success;
 }
 

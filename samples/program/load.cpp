@@ -45,7 +45,8 @@ SceneSummary summarize(const LibraryDescription& scene) {
                          .max_depth = scene.max_depth,
                          .rr_depth = scene.rr_depth,
                          .samples = scene.samples,
-                         .materials = {}};
+                         .materials = {},
+                         .files = {scene.files.begin(), scene.files.end()}};
     for (const auto& shape : scene.shapes) {
         const bool mesh = std::holds_alternative<Mesh>(shape.geometry);
         summary.meshes += mesh ? 1 : 0;
@@ -81,6 +82,7 @@ LoadedScene load_scene(const SceneOptions& options, bool quiet) {
     }
     if (options.filter) description.film.filter = *options.filter;
     SceneSummary summary = summarize(description);
+    const DivertedOutput embree_may_talk;
     return {std::move(summary), build_any(description, options.build)};
 }
 

@@ -13,9 +13,16 @@
 
 #include <fcntl.h>
 #include <unistd.h>
+#include <algorithm>
 #include <array>
+#include <atomic>
+#include <chrono>
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
+#include <exception>
 #include <new>
+#include <thread>
 
 namespace lightswitch::program {
 namespace {
@@ -42,22 +49,36 @@ private:
     static std::string usage(const char* arguments) { return fmt::format("Usage: lightswitch {}\n", arguments); }
 };
 
+/// The command line, last word first as CLI11 wants it. It looks for options even behind a "--" in places, so words there
+/// that begin with "-" are written as the file names that they are.
+std::vector<std::string> reversed_words(int argc, char** argv) {
+    std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+    const auto end = std::find(words.begin(), words.end(), "--");
+    for (auto word = end; word != words.end(); ++word)
+        if (word != end && word->starts_with('-')) word->insert(0, "./");
+    std::reverse(words.begin(), words.end());
+    return words;
+}
+
 /// What CLI11 could not place: an option that is not known, or one word too many.
 void refuse_leftovers(const CLI::App& command) {
-    const std::vector<std::string> leftovers = command.remaining();
+    std::vector<std::string> leftovers = command.remaining();
+    // The first "--" ends the options, and is not there for itself.
+    const auto end = std::find(leftovers.begin(), leftovers.end(), "--");
+    const auto option =
+        std::find_if(leftovers.begin(), end, [](const std::string& word) { return word.size() > 1 && word[0] == '-'; });
+    const std::string unknown = option == end ? std::string() : *option;
+    if (end != leftovers.end()) leftovers.erase(end);
     if (leftovers.empty()) return;
-    const auto option = std::find_if(leftovers.begin(), leftovers.end(),
-                                     [](const std::string& word) { return word.size() > 1 && word[0] == '-'; });
     const bool top = command.get_parent() == nullptr;
     const std::string prefix = top ? "" : command.get_name() + ": ";
     const std::string help = fmt::format("; see \"lightswitch {}--help\"", top ? "" : command.get_name() + " ");
-    if (option == leftovers.end())
-        throw Error(fmt::format("{}there is no use for \"{}\"{}", prefix, leftovers[0], help));
+    if (unknown.empty()) throw Error(fmt::format("{}there is no use for \"{}\"{}", prefix, leftovers[0], help));
     std::vector<std::string> names;
     for (const CLI::Option* known : command.get_options())
         for (const std::string& name : known->get_lnames()) names.push_back("--" + name);
     const std::vector<std::string_view> views(names.begin(), names.end());
-    const std::string word = option->substr(0, option->find('='));
+    const std::string word = unknown.substr(0, unknown.find('='));
     throw Error(fmt::format("{}there is no option \"{}\"{}{}", prefix, word, suggestion(word, views), help));
 }
 
@@ -81,7 +102,8 @@ int run_command(int argc, char** argv) {
         "  lightswitch render cornell-box --method path-nee --spp 64 --output box.png --output box.exr\n"
         "  lightswitch compare box.exr reference.exr --output difference.png\n"
         "  lightswitch verify cornell-box --methods path-nee --reference path\n\n"
-        "\"lightswitch COMMAND --help\" explains the options of a command.");
+        "\"lightswitch COMMAND --help\" explains the options of a command. Behind \"--\" stand only files, also those\n"
+        "whose names begin with \"-\".");
 
     RenderOptions render_options;
     CompareOptions compare_options;
@@ -116,9 +138,10 @@ int run_command(int argc, char** argv) {
     if (!is_command && first[0] != '-')
         throw Error(fmt::format("there is no command \"{}\"{}; known are {}", first, suggestion(first, commands),
                                 list(commands)));
-    if (!is_command) app.allow_extras();
+    app.allow_extras();
+    app.require_subcommand(0, 1);  // a second name of a command is a word like others
     try {
-        app.parse(argc, argv);
+        app.parse(reversed_words(argc, argv));
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
         throw Error(explain(error));
@@ -149,12 +172,28 @@ void occupy_standard_streams() {
             _exit(user_error);
 }
 
+/// What no thread has caught: oneTBB throws so out of its own threads when it cannot start one more. An error like others.
+[[noreturn]] void end_by_uncaught() {
+    static std::atomic_flag told;
+    if (told.test_and_set()) std::this_thread::sleep_for(std::chrono::seconds(1));  // another thread ends the program
+    try {
+        if (const auto exception = std::current_exception()) std::rethrow_exception(exception);
+    } catch (const std::exception& error) {
+        print_error(error.what());
+        std::_Exit(user_error);
+    } catch (...) {
+    }
+    std::abort();
+}
+
 }  // namespace
 }  // namespace lightswitch::program
 
 int main(int argc, char** argv) {
     using namespace lightswitch::program;
     occupy_standard_streams();
+    std::signal(SIGXFSZ, SIG_IGN);  // a file that becomes too large is then a failed write, and an error
+    std::set_terminate(end_by_uncaught);
     try {
         const int status = run_command(argc, argv);
         if (std::fflush(stdout) != 0 || std::ferror(stdout)) {

@@ -1,5 +1,7 @@
 #include "messages.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
 #include <cstdio>
 #include <string>
 
@@ -20,5 +22,18 @@ void print(std::string_view kind, std::string_view message) {
 void print_error(std::string_view message) { print("error: ", message); }
 void print_warning(std::string_view message) { print("warning: ", message); }
 void print_note(std::string_view message) { print("", message); }
+
+DivertedOutput::DivertedOutput() {
+    std::fflush(stdout);
+    output_ = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0);
+    if (output_ != -1) dup2(STDERR_FILENO, STDOUT_FILENO);
+}
+
+DivertedOutput::~DivertedOutput() {
+    if (output_ == -1) return;
+    std::fflush(stdout);
+    dup2(output_, STDOUT_FILENO);
+    close(output_);
+}
 
 }  // namespace lightswitch::program

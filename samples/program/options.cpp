@@ -14,7 +14,7 @@ void add_outputs(CLI::App& app, std::vector<std::filesystem::path>& outputs, con
     add_values(
         app, "-o,--output", "FILE",
         [&](const std::string& text) {
-            if (text.empty()) throw Error("--output: the file has no name");
+            if (text.empty()) throw Error("--output: the name is empty");
             outputs.emplace_back(text);
         },
         help);
@@ -87,9 +87,8 @@ void add_scene_options(CLI::App& app, SceneOptions& options) {
 
 void add_render(CLI::App& app, RenderOptions& options) {
     add_scene_options(app, options.scene);
-    app.add_option("-m,--method", options.method,
-                   "rendering method: " + list(known_methods) + "\n(default: path-nee; see \"lightswitch methods\")")
-        ->type_name("NAME");
+    add_name(app, "-m,--method", "NAME", options.method,
+             "rendering method: " + list(known_methods) + "\n(default: path-nee; see \"lightswitch methods\")");
     add_outputs(app, options.outputs,
                 "image to write, by extension: .exr, .pfm, .hdr (linear) or .png\n(exposure, sRGB); may be repeated");
     add_value(
@@ -103,7 +102,7 @@ void add_render(CLI::App& app, RenderOptions& options) {
         app, "--error", "E",
         [&](const std::string& text) { options.budget.error = parse_number_option("--error", text, 0, true); },
         "estimated root mean square error of a pixel as a fraction of the\nimage's mean (0.01 is 1 %), judged from 16 "
-        "samples on");
+        "samples on.\nAlone it ends an image that stays black after 256 samples");
     add_seed(app, options.seed, "another seed gives other noise (default: 0)");
     add_threads(app, options.threads, ".\nThe image is the same for any number");
     add_value(
@@ -122,13 +121,12 @@ void add_render(CLI::App& app, RenderOptions& options) {
             options.exposure = parse_float("--exposure", text, std::numeric_limits<double>::lowest(), false);
         },
         "brightness of .png: radiance times 2^STOPS (default: 0)");
-    app.add_option("--stats", options.stats, "write the render's numbers as JSON; - is standard output")
-        ->type_name("FILE.json");
+    add_name(app, "--stats", "FILE.json", options.stats, "write the render's numbers as JSON; - is standard output");
     app.add_flag("-q,--quiet", options.quiet, "no progress, no notices on mesh files, no summary");
     add_method_options(app, options.of_method);
     app.footer(
-        "Of --spp, --seconds and --error the limit that is met first ends the render. Ctrl-C ends it too:\n"
-        "the image so far is written; a second Ctrl-C ends the program at once.\n\n"
+        "Of --spp, --seconds and --error the limit that is met first ends the render. Ctrl-C, SIGTERM and SIGHUP end\n"
+        "it too: the image so far is written; a second Ctrl-C ends the program at once.\n\n"
         "Exit status: 0 done, 2 an error of which one line on standard error tells, 130 cancelled.\n\n"
         "Examples:\n"
         "  lightswitch render cornell-box --output box.png\n"
@@ -151,15 +149,13 @@ void add_compare(CLI::App& app, CompareOptions& options) {
                    "two or more images of one size: .exr, .hdr or .pfm. The last one\nis the reference, unless "
                    "--reference names it")
         ->type_name("");
-    add_value(
-        app, "-r,--reference", "FILE", [&](const std::string& text) { options.reference = text; },
-        "what all images are compared with");
+    add_name(app, "-r,--reference", "FILE", options.reference, "what all images are compared with");
     add_outputs(
         app, options.outputs,
         ".png: the first image less the reference in false colours, red\nwhere it is brighter, with a legend; .exr or "
         ".pfm: the\ndifference itself; may be repeated");
-    add_value(
-        app, "--report", "FILE.html", [&](const std::string& text) { options.report = text; },
+    add_name(
+        app, "--report", "FILE.html", options.report,
         "a page to look at them: slider, flip, exposure, zoom, difference\nand FLIP maps, table of metrics. Needs no "
         "network");
     app.add_flag("--absolute", options.absolute, "write the magnitude of the difference instead");
@@ -182,10 +178,9 @@ void add_verify(CLI::App& app, VerifyCommand& command) {
               "what to verify, separated by commas (default: all that have an\nexpected image, but the reference)")
         ->delimiter(',')
         ->allow_extra_args(false);
-    app.add_option("-r,--reference", command.reference,
-                   "what to verify them against, which must be unbiased (default:\npath-nee; path where that is in question; bdpt where the others "
-                   "cannot\nmake the paths, or make more than what is verified)")
-        ->type_name("NAME");
+    add_name(app, "-r,--reference", "NAME", command.reference,
+             "what to verify them against, which must be unbiased (default:\npath-nee; path where that is in question; bdpt "
+             "where the others\nlack paths, or path-nee does)");
     add_names("--images", "FILES", command.images,
               "instead of methods: independent renders (different seeds) of the\nscene by any renderer, such as "
               "'mine/*.exr'");
@@ -219,10 +214,10 @@ void add_verify(CLI::App& app, VerifyCommand& command) {
         "path length of the image, as for render");
     add_seed(app, command.options.seed, "another seed draws other samples (default: 0)");
     add_threads(app, command.options.threads);
-    add_value(
-        app, "--report", "FILE.html", [&](const std::string& text) { command.report = text; },
+    add_name(
+        app, "--report", "FILE.html", command.report,
         "a page with images, maps of differences and p-values, error over\ntime and all numbers. Needs no network");
-    app.add_option("--json", command.json, "write the verdicts as JSON; - is standard output")->type_name("FILE.json");
+    add_name(app, "--json", "FILE.json", command.json, "write the verdicts as JSON; - is standard output");
     app.add_flag("-q,--quiet", command.quiet, "no progress, no notices on mesh files, no text");
     add_method_options(app, command.of_methods);
     app.footer(
@@ -244,9 +239,7 @@ void add_strategies(CLI::App& app, StrategiesCommand& command) {
     add_scene_options(app, command.scene);
     add_outputs(app, command.outputs,
                 "picture of all strategies, by extension: .png, .exr, .hdr or .pfm;\nmay be repeated");
-    add_value(
-        app, "--directory", "DIR", [&](const std::string& text) { command.directory = text; },
-        "write each strategy there as s2_t3.exr (linear)");
+    add_name(app, "--directory", "DIR", command.directory, "write each strategy there as s2_t3.exr (linear)");
     add_value(
         app, "--max-depth", "D",
         [&](const std::string& text) { command.max_depth = parse_int("--max-depth", text, 1, most_strategy_depth); },

@@ -3,29 +3,26 @@
 #include "messages.hpp"
 #include "method_notes.hpp"
 #include "method_options.hpp"
+#include "outputs.hpp"
 #include "progress.hpp"
 #include "run.hpp"
 #include "statistics.hpp"
 #include "warnings.hpp"
 
-#include <lightswitch/film/image_io.hpp>
-
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <cmath>
 
 namespace lightswitch::program {
 namespace {
 
-/// Everything that can be known to be unwritable before the work begins.
-void check_outputs(const RenderOptions& options) {
+Outputs checked_outputs(const RenderOptions& options) {
     if (options.outputs.empty() && options.stats.empty())
         throw Error("nothing would be kept: name a file with --output (.png, .exr, .hdr or .pfm)");
-    for (const auto& output : options.outputs) check_writable(output);
-    if (options.stats.empty() || options.stats == "-") return;
-    check_file_writable(options.stats);
-    if (std::find(options.outputs.begin(), options.outputs.end(), options.stats) != options.outputs.end())
-        throw Error("--stats and --output name the same file, " + options.stats);
+    Outputs outputs;
+    for (const auto& output : options.outputs) outputs.add_image("--output", output);
+    outputs.add_text("--stats", options.stats);
+    return outputs;
 }
 
 void warn_about_depths(const AnyMethod& method, const RenderOptions& options) {
@@ -62,39 +59,46 @@ std::string summary_line(const AnyMethod& method, const Rendered& rendered, cons
 
 int render(const RenderOptions& options) {
     AnyMethod method = find_method(options.method, "--method");
-    check_outputs(options);
+    const Outputs outputs = checked_outputs(options);
     const LoadedScene loaded = load_scene(options.scene, options.quiet);
+    outputs.refuse_inputs(loaded.summary.files);
     const Size size = loaded.summary.size;
     set_options({&method, 1}, options.of_method, std::size_t(size.width) * std::size_t(size.height));
     warn_about_scene(loaded, method_name(method));
     warn_about_depths(method, options);
     set_path_length(method, path_length(loaded.summary, options.max_depth, options.rr_depth));
 
-    const Cancellation cancellation;
+    Cancellation cancellation;
     ProgressLine line(!options.quiet);
-    const Job job{.budget = budget(options, loaded.summary),
+    const Budget limits = budget(options, loaded.summary);
+    const bool error_alone = limits.samples == 0 && limits.seconds == 0;
+    bool stays_black = false;
+    const Job job{.budget = limits,
                   .settings = {.seed = options.seed,
                                .threads = options.threads,
                                .sampling = options.sampling,
                                .stop = cancellation.token()},
                   .observer = [&](const Progress& progress, const RenderStatistics& statistics) {
                       line.update(progress, statistics.counts.rays);
+                      stays_black = error_alone && progress.iterations >= most_black_samples &&
+                                    std::isinf(progress.film.relative_error());
+                      if (stays_black) cancellation.stop();
                   }};
-    const Rendered rendered = std::visit([&](const auto& m) { return run(loaded.scene, m, job); }, method);
+    Rendered rendered = std::visit([&](const auto& m) { return run(loaded.scene, m, job); }, method);
     line.clear();
 
-    const RenderStatistics& statistics = rendered.statistics;
+    RenderStatistics& statistics = rendered.statistics;
+    if (stays_black) {
+        statistics.cancelled = false;  // by nobody
+        warn_about_black(statistics.iterations);
+    }
     if (statistics.iterations == 0) {
         print_note("cancelled before the first sample was complete: nothing is written");
         return Status::cancelled;
     }
     warn_about_values(statistics.counts, rendered.image);
-    for (const auto& output : options.outputs) save(output, rendered.image, {.exposure = options.exposure});
-    if (!options.stats.empty()) {
-        const std::string json = statistics_json(loaded.scene, method, options, rendered);
-        if (options.stats == "-") fmt::print("{}", json);
-        else write_file_atomically(options.stats, json);
-    }
+    for (const auto& output : options.outputs) write_image(output, rendered.image, {.exposure = options.exposure});
+    if (!options.stats.empty()) write_text(options.stats, statistics_json(loaded.scene, method, options, rendered));
     // Whoever reads the statistics from standard output wants nothing else there.
     if (!options.quiet)
         fmt::print(options.stats == "-" ? stderr : stdout, "{}", summary_line(method, rendered, options));

@@ -1,6 +1,7 @@
 #include "cancellation.hpp"
 #include "load.hpp"
 #include "messages.hpp"
+#include "outputs.hpp"
 #include "progress.hpp"
 #include "run.hpp"
 #include "text.hpp"
@@ -48,13 +49,17 @@ std::filesystem::path file_of(const StrategyImage& one, const std::string& direc
 }
 
 /// Everything that can be known to be impossible before the work begins.
-void check_outputs(const StrategiesCommand& command, const std::vector<StrategyImage>& all, const Size& size) {
+void check_outputs(const StrategiesCommand& command, const std::vector<StrategyImage>& all,
+                   const SceneSummary& summary) {
     if (command.outputs.empty() && command.directory.empty())
         throw Error("nothing would be kept: name a file with --output (.png, .exr, .hdr or .pfm) or a --directory");
-    for (const auto& output : command.outputs) check_writable(output);
+    Outputs outputs;
+    for (const auto& output : command.outputs) outputs.add_image("--output", output);
     if (!command.directory.empty())
-        for (const StrategyImage& one : all) check_writable(file_of(one, command.directory));
+        for (const StrategyImage& one : all) outputs.add_image("--directory", file_of(one, command.directory));
+    outputs.refuse_inputs(summary.files);
     if (command.outputs.empty()) return;
+    const Size& size = summary.size;
     const long long columns = command.max_depth + 1, rows = command.max_depth, line = line_height(size.width);
     try {
         Image::check_size(columns * (size.width + gap) + gap, rows * (size.height + line + gap) + gap + 2 * line);
@@ -131,7 +136,7 @@ int strategies(const StrategiesCommand& command) {
     SceneOptions scene_options = command.scene;
     if (!scene_options.size) scene_options.shrink_to = 128;
     const LoadedScene loaded = load_scene(scene_options, command.quiet);
-    check_outputs(command, all, loaded.summary.size);
+    check_outputs(command, all, loaded.summary);
     warn_about_scene(loaded, Bdpt::name);
 
     const Cancellation cancellation;
@@ -176,7 +181,7 @@ int strategies(const StrategiesCommand& command) {
     const float exposure = common_exposure(all);
     std::string written;
     const auto keep = [&](const std::filesystem::path& file, const Image& image) {
-        save(file, image);
+        write_image(file, image);
         written += (written.empty() ? "; wrote " : ", ") + file.string();
     };
     if (!command.outputs.empty()) {
@@ -184,7 +189,7 @@ int strategies(const StrategiesCommand& command) {
         for (const auto& output : command.outputs) keep(output, sheet);
     }
     if (!command.directory.empty()) {
-        for (const StrategyImage& one : all) save(file_of(one, command.directory), one.image);
+        for (const StrategyImage& one : all) write_image(file_of(one, command.directory), one.image);
         written += fmt::format("{}{} images in {}", written.empty() ? "; wrote " : ", ", all.size(), command.directory);
     }
     if (command.quiet) return success;

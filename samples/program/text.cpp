@@ -32,8 +32,10 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-std::string suggestion(std::string_view word, std::span<const std::string_view> known) {
-    if (word.size() > 64) return {};
+std::string suggestion(std::string_view given, std::span<const std::string_view> known) {
+    if (given.size() > 64) return {};
+    std::string word(given);
+    for (char& c : word) c = c == '_' || c == ' ' ? '-' : c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
     std::string_view nearest;
     std::size_t least = std::max<std::size_t>(2, word.size() / 3) + 1;
     for (const std::string_view candidate : known) {
@@ -41,6 +43,17 @@ std::string suggestion(std::string_view word, std::span<const std::string_view> 
         if (distance >= least || distance >= candidate.size()) continue;
         least = distance;
         nearest = candidate;
+    }
+    if (nearest.empty() && word.size() > word.find_first_not_of('-') + 2) {  // a part of a name, or a name and more
+        least = std::string::npos;
+        for (const std::string_view candidate : known) {
+            const bool part = candidate.find(word) != std::string_view::npos;
+            if (!part && word.find(candidate) == std::string::npos) continue;
+            const std::size_t distance = part ? candidate.size() - word.size() : word.size() - candidate.size();
+            if (distance >= least) continue;
+            least = distance;
+            nearest = candidate;
+        }
     }
     return nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest);
 }

@@ -41,6 +41,19 @@ void add_values(CLI::App& app, const std::string& name, const std::string& type,
         ->allow_extra_args(false);
 }
 
+/// A name, of a file or of anything else, that is not empty. `target` is a string or a path.
+inline void add_name(CLI::App& app, const std::string& name, const std::string& type, auto& target,
+                     const std::string& help) {
+    const std::string option = name.substr(name.find("--"));
+    add_value(
+        app, name, type,
+        [option, &target](const std::string& text) {
+            if (text.empty()) throw Error(option + ": the name is empty");
+            target = text;
+        },
+        help);
+}
+
 /// A finite number of single precision, of at least `least`, or above it when `above` is set.
 inline float parse_float(std::string_view option, std::string_view text, double least, bool above) {
     const auto value = static_cast<float>(parse_number_option(option, text, least, above));

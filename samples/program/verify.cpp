@@ -3,13 +3,13 @@
 #include "messages.hpp"
 #include "method_notes.hpp"
 #include "method_options.hpp"
+#include "outputs.hpp"
 #include "progress.hpp"
 #include "run.hpp"
 #include "text.hpp"
 
 #include <lightswitch/compare/verdict_report.hpp>
 #include <lightswitch/compare/verify.hpp>
-#include <lightswitch/film/file.hpp>
 #include <lightswitch/film/image_io.hpp>
 #include <lightswitch/scene/stock.hpp>
 
@@ -48,8 +48,10 @@ std::vector<std::string> expand(const std::vector<std::string>& patterns, std::s
 }
 
 /// Independent renders of one scene. What makes them useless as such is an error that names the files.
-std::vector<Image> load_replicas(const std::vector<std::string>& patterns, std::string_view option) {
+std::vector<Image> load_replicas(const std::vector<std::string>& patterns, std::string_view option,
+                                 std::vector<std::filesystem::path>& read) {
     const std::vector<std::string> files = expand(patterns, option);
+    read.insert(read.end(), files.begin(), files.end());
     if (files.size() < 3)
         throw Error(fmt::format(
             "{}: {} file{} given; at least 3 independent renders (different seeds) are needed to know their "
@@ -85,6 +87,7 @@ std::string title_of(const std::vector<std::string>& patterns) {
 struct Contest {
     std::optional<LoadedScene> loaded;
     std::string title;
+    std::vector<std::filesystem::path> files;  // that were read
     std::vector<Estimator> methods;
     std::optional<Estimator> reference;
 };
@@ -141,7 +144,7 @@ Contest make_contest(const VerifyCommand& command, const std::stop_token& stop) 
     const bool from_files = !command.images.empty();
     std::vector<Image> images;
     if (from_files) {
-        images = load_replicas(command.images, "--images");
+        images = load_replicas(command.images, "--images", contest.files);
         size = {images[0].width(), images[0].height()};
         if (!command.methods.empty()) throw Error("--images are what is verified: leave out --methods");
         contest.methods.push_back(given(images, title_of(command.images)));
@@ -151,7 +154,7 @@ Contest make_contest(const VerifyCommand& command, const std::stop_token& stop) 
         if (!command.scene.scene.empty() || !command.reference.empty())
             throw Error("--against is the reference: leave out the scene and --reference");
         set_options({}, command.of_methods, 0);
-        std::vector<Image> others = load_replicas(command.against, "--against");
+        std::vector<Image> others = load_replicas(command.against, "--against", contest.files);
         for (const Image& image : images)
             for (const Image& other : others) {
                 refuse_unless_comparable(image, other);
@@ -168,6 +171,7 @@ Contest make_contest(const VerifyCommand& command, const std::stop_token& stop) 
             list(stock::names)));
     load(contest, command, size);
     const SceneSummary& summary = contest.loaded->summary;
+    contest.files.insert(contest.files.end(), summary.files.begin(), summary.files.end());
     contest.title = command.scene.scene;
 
     const PathClasses possible_here = possible(contest.loaded->scene);
@@ -271,12 +275,12 @@ int status_of(const std::vector<Verdict>& verdicts) {
 }  // namespace
 
 int verify(const VerifyCommand& command) {
-    for (const std::string& file : {command.report, command.json})
-        if (!file.empty() && file != "-") check_file_writable(file);
-    if (!command.report.empty() && command.report == command.json)
-        throw Error("--report and --json name the same file, " + command.json);
+    Outputs outputs;
+    outputs.add_file("--report", command.report);
+    outputs.add_text("--json", command.json);
     const Cancellation cancellation;
     const Contest contest = make_contest(command, cancellation.token());
+    outputs.refuse_inputs(contest.files);
 
     ProgressLine line(!command.quiet);
     VerifyOptions options = command.options;
@@ -297,13 +301,11 @@ int verify(const VerifyCommand& command) {
     if (!command.json.empty()) {
         Json json{{"scene", contest.title}, {"verdicts", Json::array()}};
         for (const Verdict& v : verdicts) json["verdicts"].push_back(verdict_json(v));
-        const std::string dumped = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-        if (command.json == "-") fmt::print("{}", dumped);
-        else write_file_atomically(command.json, dumped);
+        write_text(command.json, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
     }
     const bool drawn = std::none_of(verdicts.begin(), verdicts.end(),
                                     [](const Verdict& v) { return v.image.empty() || v.reference_image.empty(); });
-    if (!command.report.empty() && drawn) save_report(command.report, verdict_report(contest.title, verdicts));
+    if (!command.report.empty() && drawn) write_report(command.report, verdict_report(contest.title, verdicts));
     if (!cancellation.token().stop_requested()) return status_of(verdicts);
     print_note(drawn ? "cancelled: the verdict is on the images so far"
                      : "cancelled before there was an image: no report is written");

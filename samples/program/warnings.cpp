@@ -52,4 +52,11 @@ void warn_about_values(const RenderCounts& counts, const Image& image) {
         counts.non_finite, first.pixel % width, first.pixel / width, first.iteration, first.seed, first.iteration + 1));
 }
 
+void warn_about_black(std::uint64_t samples) {
+    print_warning(fmt::format(
+        "the image is black after {} samples per pixel, so its error is not known and --error cannot be met; --spp or "
+        "--seconds beside it say how long to look",
+        samples));
+}
+
 }  // namespace lightswitch::program

@@ -14,4 +14,8 @@ void warn_about_scene(const LoadedScene& loaded, std::string_view method);
 /// Values that were not finite, and how to meet the first of them again.
 void warn_about_values(const RenderCounts& counts, const Image& image);
 
+/// Samples after which an image that is still black ends a render which nothing but --error would end.
+inline constexpr std::uint64_t most_black_samples = 256;
+void warn_about_black(std::uint64_t samples);
+
 }  // namespace lightswitch::program

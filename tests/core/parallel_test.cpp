@@ -75,6 +75,14 @@ TEST_CASE("parallel: units may start parallel work of their own") {
     CHECK(runs == 100);
 }
 
+TEST_CASE("parallel: threads are counted by starting them, and none is left") {
+    const int before = detail::own_threads();
+    for (const int wanted : {0, 1, 5}) CHECK(detail::startable_threads(wanted) == wanted);
+    CHECK(detail::own_threads() <= before);
+    CHECK(detail::allow_threads(3) == 3);
+    CHECK(detail::allow_threads(1) == 1);
+}
+
 #if defined(__SSE2__)
 TEST_CASE("parallel: denormal numbers are zero while the guard lives, and what was set before comes back") {
     volatile float small = std::numeric_limits<float>::min();

@@ -422,6 +422,41 @@ TEST_CASE("atomic files: replaced as a whole, through links, with names of every
     CHECK(fs::is_symlink(scratch.path / "link"));
     CHECK(read_file(path, 100) == "third");
     CHECK(scratch.files() == 3);
+    fs::create_symlink("new", scratch.path / "to new");  // a link to what is not there yet
+    write_file_atomically(scratch.path / "to new", "fourth");
+    CHECK(fs::is_symlink(scratch.path / "to new"));
+    CHECK(read_file(scratch.path / "new", 100) == "fourth");
+    fs::create_symlink("loop", scratch.path / "loop");
+    check_file_writable(scratch.path / "loop");
+}
+
+TEST_CASE("two names of one file are told from two files, before and after it is written") {
+    const Scratch scratch;
+    const fs::path a = scratch.path / "a", b = scratch.path / "b";
+    fs::create_directory(scratch.path / "folder");
+    fs::create_directory_symlink("folder", scratch.path / "other name");
+    fs::create_symlink("a", scratch.path / "link");
+    fs::create_symlink(scratch.path / "link", scratch.path / "link to link");
+    const auto check_all = [&] {
+        CHECK(same_file(a, a));
+        CHECK(same_file(a, scratch.path / "folder" / ".." / "." / "a"));
+        CHECK(same_file(a, fs::relative(a)));
+        CHECK(same_file(a, scratch.path / "link"));
+        CHECK(same_file(scratch.path / "link to link", a));
+        CHECK(same_file(scratch.path / "folder" / "a", scratch.path / "other name" / "a"));
+        CHECK_FALSE(same_file(a, b));
+        CHECK_FALSE(same_file(a, scratch.path / "folder" / "a"));
+        CHECK_FALSE(same_file(b, scratch.path / "link"));
+    };
+    check_all();
+    write_file_atomically(a, "");
+    check_all();
+    CHECK_FALSE(same_file(a, scratch.path / "hard"));
+    fs::create_hard_link(a, scratch.path / "hard");
+    CHECK(same_file(a, scratch.path / "hard"));
+    write_file_atomically(b, "");
+    write_file_atomically(scratch.path / "folder" / "a", "");
+    check_all();
 }
 
 #if defined(__unix__) || defined(__APPLE__)

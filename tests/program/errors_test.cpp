@@ -43,6 +43,9 @@ TEST_CASE("a command that is missing, unknown or misspelt") {
                                  {{"rendr"}, "did you mean \"render\"?; known are render, compare, verify, strategies, methods, info"},
                                  {{"--bogus"}, "there is no option \"--bogus\""},
                                  {{"methods", "path"}, "there is no use for \"path\""},
+                                 {{"--", "render"}, "name a command"},
+                                 {{"render", "furnace", "-o", "x.png", "info"}, "there is no use for \"info\""},
+                                 {{"render", "furnace", "--out", "x.png"}, "did you mean \"--output\"?"},
                                  {{"info"}, "name a scene"},
                                  {{"info", "furnace", "--spp", "3"}, "there is no option \"--spp\""},
                              });
@@ -61,6 +64,15 @@ TEST_CASE("render: scenes and methods that do not exist") {
                                  {render({"--method", "pathnee"}),
                                   "did you mean \"path-nee\"?; known are silhouette, phong, path"},
                                  {render({"--method", "radiosity"}), "no method \"radiosity\"; known are silhouette"},
+                                 {render({"--method", "PATH"}), "did you mean \"path\"?"},
+                                 {render({"--method", "Path_Nee"}), "did you mean \"path-nee\"?"},
+                                 {render({"--method", "nee"}), "did you mean \"path-nee\"?"},
+                                 {render({"--method", "photonmapping"}), "did you mean \"photon\"?"},
+                                 {render({"--method", "xyz"}), "no method \"xyz\"; known are silhouette"},
+                                 {render({"--method", ""}), "--method: the name is empty"},
+                                 {{"render", "cornell", "-o", "x.png"}, "did you mean \"cornell-box\"?"},
+                                 {{"verify", "furnace", "-m", "pth"}, "--methods: there is no method \"pth\"; did you mean \"path\"?"},
+                                 {{"verify", "furnace", "-r", "pth"}, "--reference: there is no method \"pth\"; did you mean \"path\"?"},
                                  {render({"--define", "a=1"}), "stock scenes have no parameters"},
                                  {render({"--define", "a"}), "not NAME=VALUE"},
                              });
@@ -76,7 +88,15 @@ TEST_CASE("render: outputs that cannot be written") {
                       {{"render", "furnace", "-o", "missing/x.png"}, "the directory 'missing' does not exist"},
                       {{"render", "furnace", "-o", "x.jpg"}, "an image is one of .exr, .hdr, .pfm, .png"},
                       {{"render", "furnace", "-o", "x"}, "has no extension"},
-                      {{"render", "furnace", "-o", ""}, "the file has no name"},
+                      {{"render", "furnace", "-o", ""}, "--output: the name is empty"},
+                      {{"render", "furnace", "--stats", ""}, "--stats: the name is empty"},
+                      {{"verify", "furnace", "--json", ""}, "--json: the name is empty"},
+                      {{"verify", "furnace", "--report", ""}, "--report: the name is empty"},
+                      {{"verify", "furnace", "--reference", ""}, "--reference: the name is empty"},
+                      {{"strategies", "furnace", "--directory", ""}, "--directory: the name is empty"},
+                      {{"compare", "a.pfm", "b.pfm", "--report", ""}, "--report: the name is empty"},
+                      {{"compare", "a.pfm", "--reference", ""}, "--reference: the name is empty"},
+                      {{"compare", "a.pfm", "b.pfm", "-o", "folder.png"}, "--output: folder.png: is a directory"},
                       // Found out before the work, which would take for ever.
                       {render({"--spp", "2147483647", "-o", "missing/x.png"}), "does not exist"},
                       {render({"--stats", "missing/s.json"}), "the directory 'missing' does not exist"},
@@ -109,6 +129,42 @@ TEST_CASE("render: values out of range") {
                                  {render({"--sampler", "halton"}), "known are sobol, independent"},
                                  {render({"--filter", "sinc"}), "known are box, tent, gaussian"},
                                  {render({"stray"}), "there is no use for \"stray\""},
+                             });
+}
+
+TEST_CASE("numbers at their extremes: every option names itself") {
+    const Workspace workspace;
+    const auto refuse = [&](const std::string& command, std::initializer_list<std::string> options,
+                            std::initializer_list<std::string> values) {
+        std::vector<BadCall> calls;
+        for (const std::string& option : options)
+            for (const std::string& value : values) {
+                calls.push_back({{command, "furnace", option, value}, option + ": "});
+                if (command != "verify") calls.back().arguments.insert(calls.back().arguments.end(), {"-o", "x.png"});
+            }
+        check_refused(workspace, calls);
+    };
+    refuse("render", {"--spp", "--seconds", "--error", "--size"}, {"-5", "0", "nan", "inf", "", "x"});
+    refuse("render", {"--spp", "--size", "--seed", "--threads", "--max-depth"}, {"1e300", "99999999999999999999", "1.5"});
+    refuse("verify", {"--seconds", "--confidence", "--tolerance", "--lengths"}, {"-5", "nan", "inf", ""});
+    refuse("strategies", {"--spp", "--max-depth", "--size"}, {"-5", "0", "nan", ""});
+}
+
+TEST_CASE("behind -- stand files, whatever they are called") {
+    const Workspace workspace;
+    workspace.write("-in.xml", "<scene version=\"3.0.0\">\n  <sensor type=\"perspective\"/>\n</scene>\n");
+    const Ended info = run(workspace, {"info", "--", "-in.xml"});
+    CHECK(info.status == 0);
+    CHECK(info.prints("768 x 576 pixels"));
+    CHECK(run(workspace, {"render", "--spp", "1", "--size", "4x4", "-q", "-o", "-1.pfm", "--", "-in.xml"}).status == 0);
+    CHECK(run(workspace, {"render", "-in.xml", "--"}).says("no option \"-in.xml\""));
+    CHECK(run(workspace, {"compare", "-o", "x.pfm", "--", "-1.pfm", "-1.pfm"}).status == 0);
+    check_refused(workspace, {
+                                 {{"render", "--", "-in.xml"}, "name a file with --output"},
+                                 {{"render", "furnace", "-o", "y.png", "--", "-x"}, "there is no use for"},
+                                 {{"compare", "--", "-1.pfm", "-1.pfm", "-o", "x.png"}, "./-o: has no extension"},
+                                 {{"render", "-o", "-1.pfm", "--stats", "-in.xml", "--", "-in.xml"}, "--stats: -in.xml is read"},
+                                 {{"verify", "--images", "-1.pfm", "x.pfm", "x.pfm", "--", "-out.xml"}, "are the same image"},
                              });
 }
 

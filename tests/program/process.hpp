@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <random>
 #include <set>
 #include <sstream>
@@ -72,8 +73,10 @@ struct Ended {
 /// The program at work in a directory.
 class Process {
 public:
-    /// `standard_output` names a file to use instead of keeping the output, "" to close the stream.
-    Process(const Workspace& workspace, std::vector<std::string> arguments, const char* standard_output = nullptr) {
+    /// `standard_output` names a file to use instead of keeping the output, "" to close the stream. `prepare` is called in the
+    /// new process, and tells whether it may go on; where it may not, the status is 127.
+    Process(const Workspace& workspace, std::vector<std::string> arguments, const char* standard_output = nullptr,
+            const std::function<bool()>& prepare = {}) {
         std::string program = LIGHTSWITCH_PROGRAM;
         std::vector<char*> words{program.data()};
         for (std::string& argument : arguments) words.push_back(argument.data());
@@ -90,7 +93,7 @@ public:
         const bool ready =
             chdir(workspace.path().c_str()) == 0 && redirect("/dev/null", O_RDONLY, STDIN_FILENO) &&
             (out.empty() ? close(STDOUT_FILENO) == 0 : redirect(out, O_WRONLY | O_CREAT, STDOUT_FILENO)) &&
-            redirect(err, O_WRONLY | O_CREAT, STDERR_FILENO);
+            redirect(err, O_WRONLY | O_CREAT, STDERR_FILENO) && (!prepare || prepare());
         if (ready) execv(program.c_str(), words.data());
         _exit(127);
     }
@@ -98,6 +101,10 @@ public:
     Process& operator=(const Process&) = delete;
 
     void signal(int number) const { kill(id_, number); }
+    bool runs() const {
+        siginfo_t ended{};
+        return waitid(P_PID, static_cast<id_t>(id_), &ended, WEXITED | WNOHANG | WNOWAIT) == 0 && ended.si_pid == 0;
+    }
 
     Ended wait() {
         int status = 0;

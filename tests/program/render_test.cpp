@@ -176,6 +176,26 @@ TEST_CASE("the budget: seconds and error end a render, whichever comes first") {
     CHECK(number(by_samples.out, "samples_per_pixel") == 3);
 }
 
+TEST_CASE("--error on an image that stays black: nothing is claimed, and it ends and says why") {
+    const Workspace workspace;
+    workspace.write("dark.xml", small_scene(""));
+    const auto render = [&](std::vector<std::string> more) {
+        std::vector<std::string> words{"render", "dark.xml", "-D", "spp=4", "--error", "0.1", "--stats", "-"};
+        words.insert(words.end(), more.begin(), more.end());
+        return run(workspace, words);
+    };
+    const Ended alone = render({});
+    CHECK(alone.status == 0);
+    CHECK(number(alone.out, "samples_per_pixel") == 256);
+    CHECK(alone.prints("\"estimated_error\": null"));
+    CHECK(alone.prints("\"cancelled\": false"));
+    CHECK(alone.says("warning: the image is black after 256 samples per pixel, so its error is not known"));
+    CHECK_FALSE(alone.says("estimated error"));
+    const Ended limited = render({"--spp", "300"});
+    CHECK(number(limited.out, "samples_per_pixel") == 300);
+    CHECK_FALSE(limited.says("its error is not known"));
+}
+
 TEST_CASE("a scene file: its requests hold unless the command line says otherwise") {
     const Workspace workspace;
     workspace.write("room.xml", small_scene("<emitter type=\"constant\"/>"));

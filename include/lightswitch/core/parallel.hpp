@@ -11,9 +11,17 @@
 #include <xmmintrin.h>
 #endif
 
+#include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <concepts>
 #include <cstddef>
+#include <cstdio>
+#include <exception>
 #include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
 
 namespace lightswitch {
 
@@ -33,16 +41,73 @@ struct SerialExecutor {
     int threads() const { return 1; }
 };
 
-/// oneTBB with a given number of threads (0: as many as the machine has). May be more than the machine has.
+namespace detail {
+
+/// How many threads this process has, where the system tells (Linux); 0 elsewhere.
+inline int own_threads() {
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen("/proc/self/status", "r"), &std::fclose);
+    int count = 0;
+    for (char line[256]; file && count == 0 && std::fgets(line, sizeof line, file.get());)
+        if (std::sscanf(line, "Threads: %d", &count) != 1) count = 0;
+    return count;
+}
+
+/// How many threads, of at most `wanted`, the system lets this process start now: by starting them. They have ended when it
+/// returns.
+inline int startable_threads(int wanted) {
+    const int before = own_threads();
+    std::atomic<bool> counted = false;
+    std::vector<std::thread> threads;
+    try {
+        threads.reserve(static_cast<std::size_t>(std::max(wanted, 0)));
+        while (static_cast<int>(threads.size()) < wanted) threads.emplace_back([&] { counted.wait(false); });
+    } catch (const std::exception&) {  // a limit is reached, of processes or of memory
+    }
+    counted = true;
+    counted.notify_all();
+    for (std::thread& thread : threads) thread.join();
+    // For a moment the system still counts what has been joined.
+    for (int wait = 0; wait < 100 && own_threads() > before; ++wait)
+        std::this_thread::sleep_for(std::chrono::microseconds(10 << std::min(wait, 7)));
+    return static_cast<int>(threads.size());
+}
+
+/// How many threads, the caller's among them and of at most `wanted`, oneTBB may run. It starts its threads out of one
+/// another and ends the process when one cannot be started, so they are counted first; where there are too few, oneTBB
+/// asks for no more from then on. One more is left for the program's own use.
+inline int allow_threads(int wanted) {
+    struct Supply {
+        std::mutex mutex;
+        int assured = 1;
+        std::unique_ptr<tbb::global_control> limit;
+    };
+    static Supply& supply = *new Supply;  // never destroyed: without the limit oneTBB would start threads at the very end
+    constexpr int spare = 1;
+    const std::lock_guard lock(supply.mutex);
+    if (wanted > supply.assured && !supply.limit) {
+        supply.assured = std::max(supply.assured, 1 + startable_threads(wanted - 1 + spare) - spare);
+        if (supply.assured < wanted)
+            supply.limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                                 static_cast<std::size_t>(supply.assured));
+    }
+    return std::min(wanted, supply.assured);
+}
+
+}  // namespace detail
+
+/// oneTBB with a given number of threads (0: as many as the machine has). May be more than the machine has; fewer are used
+/// where the system does not let the process start so many.
 class TbbExecutor {
 public:
-    explicit TbbExecutor(int threads = 0)
-        : arena_(std::make_unique<tbb::task_arena>(threads > 0 ? threads : int{tbb::task_arena::automatic})),
-          // oneTBB starts no more threads than the machine has unless it is told to.
-          oversubscribe_(threads > tbb::info::default_concurrency()
-                             ? std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
-                                                                     static_cast<std::size_t>(threads))
-                             : nullptr) {}
+    explicit TbbExecutor(int threads = 0) {
+        const int machine = tbb::info::default_concurrency();
+        const int allowed = detail::allow_threads(threads > 0 ? threads : machine);
+        arena_ = std::make_unique<tbb::task_arena>(allowed);
+        // oneTBB starts no more threads than the machine has unless it is told to.
+        if (allowed > machine)
+            oversubscribe_ = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                                   static_cast<std::size_t>(allowed));
+    }
 
     void for_each(std::size_t n, const auto& unit) const {
         arena_->execute([&] {

@@ -3,6 +3,7 @@
 // RAII over Embree: a device, and one committed scene of triangles and spheres that rays can be traced through.
 
 #include <lightswitch/core/error.hpp>
+#include <lightswitch/core/parallel.hpp>
 #include <lightswitch/embree/api.hpp>
 #include <lightswitch/scene/ray.hpp>
 
@@ -34,6 +35,7 @@ public:
     /// `config` is Embree's own string, for example "threads=2,verbose=1,isa=avx2"; empty for the defaults. Throws `Error` when
     /// Embree cannot read it; keys that Embree does not know it ignores.
     explicit Device(const std::string& config = "") : state_(std::make_unique<State>()) {
+        lightswitch::detail::allow_threads(tbb::info::default_concurrency());  // Embree builds by oneTBB
         device_.reset(rtcNewDevice(config.empty() ? nullptr : config.c_str()));
         if (!device_)
             throw Error("Embree could not make a device from the configuration \"" + config + "\" (error " +

@@ -80,12 +80,15 @@ private:
     bool committed_ = false;
 };
 
-/// The file that writing to `path` replaces: links are followed, so that they stay links.
-inline std::filesystem::path resolve_output(const std::filesystem::path& path) {
+/// The file that writing to `path` replaces: links are followed, also to where nothing is yet, so that they stay links.
+inline std::filesystem::path resolve_output(std::filesystem::path path) {
     std::error_code error;
-    if (!std::filesystem::is_symlink(path, error)) return path;
-    const auto resolved = std::filesystem::weakly_canonical(path, error);
-    return error ? path : resolved;
+    for (int links = 0; links < 40 && std::filesystem::is_symlink(path, error); ++links) {
+        const auto next = std::filesystem::read_symlink(path, error);
+        if (error) break;
+        path = path.parent_path() / next;
+    }
+    return path;
 }
 
 /// Throws `Error` when a file of that name cannot be, as far as looking can tell.
@@ -107,6 +110,19 @@ inline void check_output_name(const std::filesystem::path& path) {
 }
 
 }  // namespace detail
+
+/// Whether both names lead to one file, or would once it is written: whatever links, relative names and other spellings
+/// lie between.
+inline bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+    std::error_code error;
+    if (std::filesystem::equivalent(a, b, error)) return true;
+    const auto place = [&](const std::filesystem::path& path) {
+        const auto target = detail::resolve_output(path);
+        const auto folder = target.has_parent_path() ? target.parent_path() : std::filesystem::path(".");
+        return std::filesystem::weakly_canonical(folder, error) / target.filename();
+    };
+    return place(a) == place(b);
+}
 
 /// Writes `bytes` to `path` so that the file is either complete or as it was before: to a temporary name in the same
 /// directory, then by renaming. Replaces an existing file; a symbolic link keeps pointing to what is written.

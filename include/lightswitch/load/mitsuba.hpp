@@ -30,6 +30,7 @@ public:
                   Notices* notices)
         : folder_(path.parent_path()), file_(path, defines), notices_(notices) {
         scene_.name = path.stem().string();
+        scene_.files.push_back(path.string());
     }
 
     LibraryDescription read() {
@@ -116,11 +117,12 @@ private:
         const bool flat = element.boolean("face_normals", false);
         element.boolean("flip_tex_coords", false);  // there are no textures
         const FileNormals use = flat ? FileNormals::ignore : FileNormals::use;
+        const std::filesystem::path file = folder_ / *name;
+        scene_.files.push_back(file.string());
         Mesh mesh;
         Notices notices;
         try {
-            mesh = element.type() == "obj" ? load_obj(folder_ / *name, use, &notices)
-                                           : load_ply(folder_ / *name, use, &notices);
+            mesh = element.type() == "obj" ? load_obj(file, use, &notices) : load_ply(file, use, &notices);
         } catch (const Error& error) {
             fail(element.origin(), error.what());
         }

@@ -99,7 +99,8 @@ struct SceneDescription {
     FilmDescription film;
     std::optional<int> max_depth;  ///< what the file asks of a method, if it does
     std::optional<int> rr_depth;
-    std::optional<int> samples;  ///< samples per pixel that the file asks for
+    std::optional<int> samples;      ///< samples per pixel that the file asks for
+    std::vector<std::string> files;  ///< what was read: the scene's file and those of its meshes
 
     std::size_t add(Material bsdf, Origin origin = {}) {
         materials.push_back({std::move(bsdf), std::move(origin)});
