@@ -15,3 +15,14 @@ expect_compile_failure(own_method_const own_types.cpp 3 "${method_needs}")
 expect_compile_failure(own_method_iterate own_types.cpp 4 "${method_needs}")
 expect_compile_failure(own_bsdf_specular own_types.cpp 5 "Bsdf.*B::specular")
 expect_compile_failure(own_bsdf_problem own_types.cpp 6 "Bsdf.*bsdf\\.problem\\(\\)")
+
+foreach(option IN ITEMS -ffast-math -ffinite-math-only)
+  expect_compile_failure(refused${option} fast_math.cpp 1 "lightswitch: compiled with -ffast-math.*LIGHTSWITCH_ALLOW_FAST_MATH"
+                         ${option})
+endforeach()
+
+expect_compile_failure(kinds_of_bsdfs scenes.cpp 1 "at most 31 kinds of surface models")
+expect_compile_failure(kinds_of_lights scenes.cpp 2 "at most 31 kinds of lights")
+set(deleted_session "(use of|call to) deleted (function|constructor).*Session")
+expect_compile_failure(session_of_temporary scenes.cpp 3 "${deleted_session}")
+expect_compile_failure(session_of_temporary_executor scenes.cpp 4 "${deleted_session}")

@@ -86,7 +86,8 @@ public:
     }
 
     /// Estimated root mean square error of the image, as a fraction of its mean: 0.01 means that a pixel is typically off by
-    /// 1 % of the average pixel. Infinite before the second iteration, and for a black image 0.
+    /// 1 % of the average pixel. Infinite, which is to say unknown, before the second iteration and while the image is black:
+    /// that nothing was found yet says nothing about what is there.
     double relative_error() const {
         if (iterations_ < 2) return std::numeric_limits<double>::infinity();
         DVec3 mean(0), variance(0);
@@ -96,7 +97,7 @@ public:
         }
         const double mean_level = (mean.x + mean.y + mean.z) / (3 * double(area()));
         const double mean_square = (variance.x + variance.y + variance.z) / (3 * double(area()));
-        return mean_level > 0 ? std::sqrt(mean_square) / mean_level : 0;
+        return mean_level > 0 ? std::sqrt(mean_square) / mean_level : std::numeric_limits<double>::infinity();
     }
 
 private:

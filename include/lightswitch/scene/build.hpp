@@ -27,6 +27,13 @@ struct BuildOptions {
 
 namespace detail {
 
+/// What the element after `count` others of its type is known by; throws when there is no number left.
+inline TypedIndex checked_index(std::size_t kind, std::size_t count, const Origin& origin, const std::string& what) {
+    if (count > TypedIndex::max_position)
+        fail(origin, "the scene has more than " + std::to_string(TypedIndex::max_position + 1) + " " + what + " of one kind");
+    return {kind, count};
+}
+
 template <class BsdfList, class LightList>
 class SceneAssembly;
 
@@ -83,7 +90,7 @@ private:
             fail(origin, "this scene type has no place for that surface model; add it to the scene's Bsdfs<...>");
         } else {
             auto& list = std::get<kind>(data_.bsdfs);
-            materials_.push_back(TypedIndex(kind, list.size()));
+            materials_.push_back(checked_index(kind, list.size(), origin, "surface models"));
             list.push_back(bsdf);
         }
     }
@@ -97,9 +104,9 @@ private:
             fail(origin, "this scene type has no place for that kind of light; add it to the scene's Lights<...>");
         } else {
             auto& list = std::get<kind>(data_.lights);
-            if (list.size() > TypedIndex::max_position) fail(origin, "too many lights");
+            const TypedIndex index = checked_index(kind, list.size(), origin, "lights");
             list.push_back(light);
-            return TypedIndex(kind, list.size() - 1);
+            return index;
         }
     }
 
