@@ -2,6 +2,8 @@
 
 // The version of the library: the one place that states it (the build reads it from here).
 
+#include <lightswitch/core/floating_point.hpp>
+
 #include <string>
 
 #define LIGHTSWITCH_VERSION_MAJOR 0

@@ -91,6 +91,22 @@ TEST_CASE("sampler: numbers are in [0, 1) and multiples of 2^-24") {
     }
 }
 
+TEST_CASE("random sequences: a number in [0, 1) is below 1, also as a float") {
+    CHECK(detail::to_unit_float(0) == 0);
+    CHECK(detail::to_unit_float(0xffffffffu) == 1 - 0x1p-24f);
+    // The first double of these is so close to 1 that it would round to it.
+    for (const std::uint64_t seed : {41744883u, 42938481u, 54323990u}) {
+        REQUIRE(static_cast<float>(RandomSequence(seed).next()) == 1);
+        CHECK(RandomSequence(seed).next() < 1);
+        CHECK(RandomSequence(seed).next_float() == 1 - 0x1p-24f);
+    }
+    RandomSequence doubles(5), floats(5);
+    for (int i = 0; i < 1000; ++i) {
+        const double x = doubles.next(), y = double(floats.next_float());
+        REQUIRE((y <= x && x - y < 0x1p-24));
+    }
+}
+
 TEST_CASE("sampler: 2^k iterations of one pixel are a (0,k,2)-net in each of the first 64 pairs") {
     for (const int k : {0, 1, 2, 4, 7, 10, 12}) {
         const std::uint64_t n = std::uint64_t{1} << k;

@@ -94,6 +94,18 @@ TEST_CASE("discrete distribution: choices are monotone, and the ends of [0, 1) a
     }
 }
 
+TEST_CASE("discrete distribution: even 1 and more, which no sampler gives, choose an index that can be chosen") {
+    for (const auto& weights : std::vector<std::vector<double>>{
+             {1}, {1, 2, 3}, {1, 0}, {0, 1, 0, 0}, {1, 1e-30}, {1e30, 1e-30, 0}, std::vector<double>(100000, 1.0)}) {
+        const DiscreteDistribution table(weights);
+        std::size_t last = weights.size() - 1;
+        while (weights[last] == 0) --last;
+        CAPTURE(weights.size());
+        CHECK(table.sample(largest_u) <= last);
+        for (const float u : {1.0f, 1.5f, 1e9f}) CHECK(table.sample(u) == last);
+    }
+}
+
 TEST_CASE("discrete distribution: weights of very different sizes") {
     const DiscreteDistribution table(std::vector<double>{1e-30, 1, 1e-30, 3, 1e-300});
     CHECK(table.probability(1) == doctest::Approx(0.25).epsilon(1e-6));

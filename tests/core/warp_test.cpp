@@ -72,6 +72,28 @@ double distance(const DVec2& a, const Vec2& b) {
 
 }  // namespace
 
+TEST_CASE("warps: the ends of the unit square are safe, also the 1 that no sampler gives") {
+    const float ends[] = {0, 0x1p-24f, 0.5f, 1 - 0x1p-24f, 1};
+    for (const float x : ends)
+        for (const float y : ends) {
+            CAPTURE(x);
+            CAPTURE(y);
+            const Vec2 u(x, y);
+            const auto unit = [](const Vec3& v) { return std::abs(double(length_squared(v)) - 1) < 1e-6; };
+            CHECK(length_squared(Vec3(concentric_disk(u), 0)) < 1 + 1e-6f);
+            CHECK(length_squared(Vec3(uniform_disk(u, 2.5f), 0)) < 2.5f * 2.5f * (1 + 1e-6f));
+            CHECK(unit(cosine_hemisphere(u)));
+            CHECK(cosine_hemisphere(u).z > 0);
+            CHECK(unit(uniform_sphere(u)));
+            for (const float cone : {1e-12f, 1e-4f, 1.0f, 2.0f}) {
+                CHECK(unit(uniform_cone(u, cone)));
+                CHECK(uniform_cone(u, cone).z >= 1 - cone);
+            }
+            const Vec2 b = uniform_triangle(u);
+            CHECK((b.x >= 0 && b.y >= 0 && b.x + b.y <= 1));
+        }
+}
+
 TEST_CASE("chi-square: the p-value is that of the literature") {
     CHECK(test::gamma_q(0.5, 0.5 * 3.841458820694124) == doctest::Approx(0.05).epsilon(1e-9));
     CHECK(test::gamma_q(5, 0.5 * 18.307038053275146) == doctest::Approx(0.05).epsilon(1e-9));

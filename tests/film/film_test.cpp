@@ -87,6 +87,16 @@ TEST_CASE("slots and splats of an iteration add up, and iterations are averaged"
     CHECK(film.relative_error() == doctest::Approx(std::sqrt(38.0 / 12 * 8 / 18) / (57.0 / 18)));
 }
 
+TEST_CASE("the error of a black image is not known") {
+    Film film(3, 2);
+    const SerialExecutor serial;
+    for (int i = 0; i < 20; ++i) film.commit(serial);
+    CHECK(std::isinf(film.relative_error()));
+    film.slot(1) = Rgb(1);
+    film.commit(serial);
+    CHECK(std::isfinite(film.relative_error()));
+}
+
 TEST_CASE("what is discarded leaves no trace") {
     Film film(2, 1);
     const SerialExecutor serial;

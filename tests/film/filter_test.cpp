@@ -44,6 +44,18 @@ TEST_CASE("filter: samples are the inverse of the distribution") {
     }
 }
 
+TEST_CASE("filter: the ends of the unit square are safe, also the 1 that no sampler gives") {
+    for (const Filter& filter : filters)
+        for (const float x : {0.0f, 0x1p-24f, 1 - 0x1p-24f, 1.0f}) {
+            CAPTURE(filter.name());
+            CAPTURE(x);
+            const Vec2 p = filter.sample({x, 0.5f});
+            CHECK(std::abs(p.x) <= filter.radius());
+            CHECK(std::abs(p.x) > 0.98f * filter.radius());
+            CHECK(p.y == 0);
+        }
+}
+
 TEST_CASE("filter: the density is that of the samples and integrates to 1") {
     // Chi-square over 16 x 16 cells of the square |offset| <= radius, seeds fixed; false alarms: 1e-6 for all five
     // together.

@@ -77,6 +77,13 @@ TEST_CASE("primary samples: a fresh one is uniform, and a function of its seed")
     CHECK(std::abs(streams.sigmas()) < 5);
 }
 
+TEST_CASE("primary samples: a number is below 1 where the double that it is made of rounds to 1") {
+    for (const std::uint64_t seed : {41744883u, 42938481u, 54323990u}) {
+        PrimarySample sample(seed);
+        CHECK(read(sample, 0, 1)[0] == 1 - 0x1p-24f);
+    }
+}
+
 TEST_CASE("primary samples: small steps stay within [0, 1) and leave the uniform distribution uniform") {
     std::vector<float> once, often;
     for (std::uint64_t seed = 0; seed < 20000; ++seed) {
@@ -303,7 +310,7 @@ void check_depths(const DepthChoice& choice, int max_depth, std::uint32_t seed) 
     // The draws are stratified: counts are off by less than 2, and fall by one at each boundary at most.
     for (std::size_t depth = 2; depth < observed.size(); ++depth)
         CHECK_MESSAGE(std::abs(observed[depth] - expected[depth]) < 2, depth);
-    for (const double u : {0.0, 0.5, 1 - 0x1p-53}) {
+    for (const double u : {0.0, 0.5, 1 - 0x1p-53, 1.0}) {
         CHECK(choice.sample(u) >= 2);
         CHECK(choice.sample(u) <= last);
     }

@@ -1,5 +1,6 @@
 // Budgets, observers, stopping and errors.
 
+#include "support/errors.hpp"
 #include "support/renders.hpp"
 
 #include <doctest/doctest.h>
@@ -100,10 +101,27 @@ TEST_CASE("a budget of samples is met exactly") {
     }
 }
 
-TEST_CASE("without limits, or with limits that are none, 64 samples are made") {
+TEST_CASE("without limits 64 samples are made") {
     CHECK(run(uniform, {}).statistics.iterations == 64);
-    CHECK(run(uniform, {.samples = 0, .seconds = -1, .error = 0}).statistics.iterations == 64);
-    CHECK(run(uniform, {.samples = -3}).statistics.iterations == 64);
+    CHECK(run(uniform, {.samples = 0, .seconds = 0, .error = 0}).statistics.iterations == 64);
+}
+
+TEST_CASE("limits that are negative or no number are refused, and nothing is rendered") {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const Noise<std::remove_cvref_t<decltype(uniform)>> method{uniform};
+    Session<DiffuseScene, std::remove_cvref_t<decltype(method)>> session(scene(), method);
+    const auto refusal = [&](const Budget& budget) { return message_of([&] { session.run(budget); }); };
+    CHECK(refusal({.samples = -5}) == "the budget of samples is -5: give 0 for no limit");
+    for (const double bad : {-1.0, -1e-300, nan, -std::numeric_limits<double>::infinity()}) {
+        CAPTURE(bad);
+        CHECK(refusal({.seconds = bad}).starts_with("the budget of seconds is "));
+        CHECK(refusal({.error = bad}).starts_with("the budget of error is "));
+        CHECK(refusal({.samples = 4, .seconds = 1, .error = bad}).starts_with("the budget of error is "));
+    }
+    CHECK(session.film().iterations() == 0);
+    CHECK_THROWS_AS(render(scene(), method, {.samples = -1}), Error);
+    session.run({.samples = 2, .seconds = std::numeric_limits<double>::infinity()});
+    CHECK(session.film().iterations() == 2);
 }
 
 TEST_CASE("a budget of seconds ends with the first iteration that exceeds it") {
@@ -140,9 +158,14 @@ TEST_CASE("a budget of error ends when the error is reached, and not before 16 i
     CHECK(result.steps[66].fraction == doctest::Approx(0.5).epsilon(0.25));
 
     CHECK(run(uniform, {.error = 100}).statistics.iterations == 16);
-    const Run black = run([](std::uint64_t, auto&) { return 0.0f; }, {.error = 1e-9});
-    CHECK(black.statistics.iterations == 16);
+    // While nothing was found nothing is known.
+    const Run black = run([](std::uint64_t, auto&) { return 0.0f; }, {.samples = 40, .error = 100});
+    CHECK(black.statistics.iterations == 40);
+    CHECK(std::isinf(black.error));
     check_progress(black);
+    const Run late = run([](std::uint64_t iteration, auto&) { return iteration < 30 ? 0.0f : 1.0f; }, {.samples = 99, .error = 100});
+    CHECK(late.statistics.iterations == 31);
+    check_progress(late);
     // An error that jumps up when something rare is met must not turn the progress back.
     const Run jumping = run(rare, {.error = 0.25}, {.sampling = Sampling::independent});
     check_progress(jumping);

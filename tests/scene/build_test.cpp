@@ -1,6 +1,7 @@
 #include <lightswitch/bsdf/conductor.hpp>
 #include <lightswitch/core/parallel.hpp>
 
+#include "../support/errors.hpp"
 #include "../support/scenes.hpp"
 
 #include <doctest/doctest.h>
@@ -171,6 +172,16 @@ TEST_CASE("build: a scene type without room for something says so") {
     CHECK_THROWS_WITH_AS((build_scene<Bsdfs<Lambert>>(mirrors)), doctest::Contains("no place for that surface model"),
                          Error);
     CHECK_THROWS_AS(build_scene<Bsdfs<Lambert>>(grey_description(), {.embree_config = "threads=x"}), Error);
+}
+
+TEST_CASE("build: more materials or lights of one kind than can be numbered are refused") {
+    const std::size_t most = (std::size_t{1} << 27) - 1;
+    const TypedIndex last = detail::checked_index(30, most, here, "lights");
+    CHECK(last);
+    CHECK(last.kind() == 30);
+    CHECK(last.position() == most);
+    CHECK(message_of([&] { detail::checked_index(0, most + 1, here, "lights"); }) ==
+          here.prefix() + "the scene has more than 134217728 lights of one kind");
 }
 
 TEST_CASE("build: triangles without area are counted and dropped, and the others keep their properties") {

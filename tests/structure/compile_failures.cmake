@@ -28,3 +28,14 @@ expect_compile_failure(render_no_scene own_types.cpp 12 "${no_scene}")
 expect_compile_failure(render_any_scene own_types.cpp 13 "what is rendered must be a scene.*std::visit")
 expect_compile_failure(verify_no_scene own_types.cpp 14 "${no_scene}")
 expect_compile_failure(render_any_method own_types.cpp 15 "${method_needs}.*std::visit")
+
+foreach(option IN ITEMS -ffast-math -ffinite-math-only)
+  expect_compile_failure(refused${option} fast_math.cpp 1 "lightswitch: compiled with -ffast-math.*LIGHTSWITCH_ALLOW_FAST_MATH"
+                         ${option})
+endforeach()
+
+expect_compile_failure(kinds_of_bsdfs scenes.cpp 1 "at most 31 kinds of surface models")
+expect_compile_failure(kinds_of_lights scenes.cpp 2 "at most 31 kinds of lights")
+set(deleted_session "(use of|call to) deleted (function|constructor).*Session")
+expect_compile_failure(session_of_temporary scenes.cpp 3 "${deleted_session}")
+expect_compile_failure(session_of_temporary_executor scenes.cpp 4 "${deleted_session}")

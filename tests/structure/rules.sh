@@ -26,6 +26,9 @@ case $rule in
   one_glm) only_one '[<"]glm/' core/math.hpp ;;
   one_stb) only_one 'stb_' ;;
   angle_includes) grep -rnE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' . | nothing 'use #include <lightswitch/...>:' ;;
+  arithmetic) grep -rL --include='*.hpp' '^#include <lightswitch/' . | grep -vx './core/floating_point.hpp' |
+    nothing 'no way leads to core/floating_point.hpp from:' ;;
+  unit_float) grep -rnE '(static_cast<float>|float) *\([^()]*next(_2d)?\(\)' . | nothing 'would round up to 1, use next_float():' ;;
   pragma_once) grep -rL --include='*.hpp' '^#pragma once$' . | nothing 'no #pragma once in:' ;;
   length) find . -name '*.hpp' -exec awk 'END { if (FNR > 320) print FILENAME ": " FNR " lines" }' {} \; |
     nothing 'headers longer than 320 lines:' ;;

@@ -2,6 +2,8 @@
 
 // The script that draws a report's charts, and draws them again when the width changes.
 
+#include <lightswitch/core/floating_point.hpp>
+
 namespace lightswitch::detail {
 
 inline constexpr const char* report_charts_script = R"js(

@@ -2,6 +2,8 @@
 
 // The script of a report's image viewer: what the mouse, the keyboard and the controls do.
 
+#include <lightswitch/core/floating_point.hpp>
+
 namespace lightswitch::detail {
 
 /// Continues `report_viewer_script`.

@@ -2,6 +2,8 @@
 
 // The parts of a report's page that are the same in every report.
 
+#include <lightswitch/core/floating_point.hpp>
+
 namespace lightswitch::detail {
 
 /// The policy lets the page load nothing at all, from the network or from other files.

@@ -2,6 +2,8 @@
 
 // How a report looks: light or dark as the reader's system asks, from a phone's width to a desk's.
 
+#include <lightswitch/core/floating_point.hpp>
+
 namespace lightswitch::detail {
 
 inline constexpr const char* report_style = R"css(

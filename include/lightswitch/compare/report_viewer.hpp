@@ -2,6 +2,8 @@
 
 // The script of a report's image viewer: what it shows.
 
+#include <lightswitch/core/floating_point.hpp>
+
 namespace lightswitch::detail {
 
 /// Opens a function that `report_controls_script` closes.

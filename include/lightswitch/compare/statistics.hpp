@@ -3,6 +3,8 @@
 // Means of few noisy values, and whether two of them can have the same expectation: Welch's test, and what becomes of
 // it when rare events decide.
 
+#include <lightswitch/core/floating_point.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

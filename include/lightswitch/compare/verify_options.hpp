@@ -2,6 +2,8 @@
 
 // How long and how strictly `verify` works.
 
+#include <lightswitch/core/floating_point.hpp>
+
 #include <cstdint>
 #include <functional>
 #include <stop_token>

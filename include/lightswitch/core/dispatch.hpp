@@ -2,6 +2,8 @@
 
 // Choosing among a fixed list of types by index, without a table of function pointers.
 
+#include <lightswitch/core/floating_point.hpp>
+
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
@@ -37,7 +39,7 @@ inline constexpr bool contains = (std::is_same_v<T, List> || ...);
 class TypedIndex {
 public:
     static constexpr std::size_t max_position = (1u << 27) - 1;
-    static constexpr std::size_t max_kind = 30;
+    static constexpr std::size_t max_kind = 30, kinds = max_kind + 1;
 
     constexpr TypedIndex() = default;
     /// `kind` at most `max_kind`, `position` at most `max_position`; unchecked.

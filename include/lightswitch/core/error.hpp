@@ -2,6 +2,9 @@
 
 // Errors that say where, what, and what to do.
 
+#include <lightswitch/core/floating_point.hpp>
+
+#include <cstdio>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -29,6 +32,13 @@ struct Origin {
         return text;
     }
 };
+
+/// A number as messages show it: as short as six digits allow.
+inline std::string number_text(double x) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%g", x);
+    return text;
+}
 
 /// Throws an `Error` whose message begins with the place.
 [[noreturn]] inline void fail(const Origin& where, std::string_view what) {

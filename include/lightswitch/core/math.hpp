@@ -2,6 +2,8 @@
 
 // Vectors, matrices, colours and directions. The only file that includes GLM.
 
+#include <lightswitch/core/floating_point.hpp>
+
 // Unless its functions are inlined, GLM passes every vector through memory.
 #ifndef GLM_FORCE_INLINE
 #define GLM_FORCE_INLINE
@@ -51,9 +53,16 @@ constexpr T luminance(const glm::vec<3, T>& c) {
     return T(0.2126) * c.x + T(0.7152) * c.y + T(0.0722) * c.z;
 }
 
-/// True when `x` is neither infinite nor NaN. Reads the bits, so that it also works under -ffast-math.
+/// True when `x` is neither infinite nor NaN. Reads the bits, which no option of the compiler changes.
 inline bool is_finite(float x) { return (std::bit_cast<std::uint32_t>(x) & 0x7f800000u) != 0x7f800000u; }
-inline bool is_finite(const Vec3& v) { return is_finite(v.x) && is_finite(v.y) && is_finite(v.z); }
+inline bool is_finite(double x) {
+    constexpr std::uint64_t exponent = 0x7ff0000000000000u;
+    return (std::bit_cast<std::uint64_t>(x) & exponent) != exponent;
+}
+template <class T>
+bool is_finite(const glm::vec<3, T>& v) {
+    return is_finite(v.x) && is_finite(v.y) && is_finite(v.z);
+}
 
 /// An orthonormal basis whose `normal` is the local z axis.
 ///

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <lightswitch/core/floating_point.hpp>
+
 namespace lightswitch {
 
 /// A value or nothing, for the inner loops: used like `std::optional`, but the value is always there as an object, if an idle one.

@@ -2,6 +2,8 @@
 
 // Running independent work units on several threads.
 
+#include <lightswitch/core/floating_point.hpp>
+
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>

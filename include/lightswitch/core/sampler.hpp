@@ -62,7 +62,7 @@ constexpr std::uint32_t sobol_second(std::uint32_t index) {
     return result;
 }
 
-/// The 24 leading bits as a float in [0, 1).
+/// The 24 leading bits as a float in [0, 1): the one way to make such a float. A double in [0, 1) would round up to 1.
 inline float to_unit_float(std::uint32_t x) { return static_cast<float>(x >> 8) * 0x1p-24f; }
 
 }  // namespace detail
@@ -161,12 +161,16 @@ public:
         : RandomSequence(static_cast<std::uint64_t>(u.x * 0x1p24f) << 24 | static_cast<std::uint64_t>(u.y * 0x1p24f)) {}
 
     /// Uniform in [0, 1), in steps of 2^-53.
-    [[gnu::always_inline]] double next() {
-        state_ += 0xa0761d6478bd642fu;
-        return double(detail::fold_multiply(state_) >> 11) * 0x1p-53;
-    }
+    [[gnu::always_inline]] double next() { return double(next_bits() >> 11) * 0x1p-53; }
+    /// The same as a float, in steps of 2^-24.
+    [[gnu::always_inline]] float next_float() { return detail::to_unit_float(static_cast<std::uint32_t>(next_bits() >> 32)); }
 
 private:
+    [[gnu::always_inline]] std::uint64_t next_bits() {
+        state_ += 0xa0761d6478bd642fu;
+        return detail::fold_multiply(state_);
+    }
+
     std::uint64_t state_;
 };
 

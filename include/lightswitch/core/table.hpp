@@ -45,6 +45,8 @@ public:
             probability_[i] = static_cast<float>((steps - previous) * 0x1p-24);
             previous = steps;
         }
+        // Whatever the number, the search ends at an index that can be chosen.
+        for (std::size_t i = n; i-- > 0 && cumulative_[i] == 1;) cumulative_[i] = infinity;
         guide_.resize(n);
         std::uint32_t i = 0;
         for (std::size_t bucket = 0; bucket < n; ++bucket) {

@@ -7,8 +7,13 @@
 #include <lightswitch/embree/api.hpp>
 #include <lightswitch/scene/ray.hpp>
 
+#if defined(__SSE2__)
+#include <xmmintrin.h>
+#endif
+
 #include <array>
 #include <atomic>
+#include <bit>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -25,6 +30,7 @@ namespace lightswitch::embree {
 struct RayCount {
     std::uint64_t intersect = 0;
     std::uint64_t occluded = 0;
+    std::uint64_t refused = 0;  ///< among both, see `Accelerator`
 };
 inline constinit thread_local RayCount ray_count{};
 
@@ -93,12 +99,19 @@ struct Hit {
 
 /// An Embree scene: geometries are added, then it is committed, and then it is immutable and rays may be traced from any number of
 /// threads.
+///
+/// Embree answers a ray that is not finite with anything from a wrong hit to the end of the process, so it is not asked: such a ray
+/// meets nothing, and is counted. So is one with coordinates beyond `largest_coordinate`, and one whose direction is 0. A `near`
+/// below 0 counts as 0.
 class Accelerator {
 public:
     struct SphereData {
         Vec3 center;
         float radius;
     };
+
+    /// The sum of the sizes of a ray's origin and direction, in each axis, up to which Embree takes it.
+    static constexpr float largest_coordinate = 1.844e18f;
 
     /// `config` as for `Device`.
     explicit Accelerator(const std::string& config = "") : device_(config) {
@@ -133,23 +146,25 @@ public:
     /// Closest hit between `ray.near` and `ray.far`; false when there is none.
     [[gnu::always_inline]] bool intersect(const Ray& ray, Hit& hit) const {
         RTCRayHit query;
-        set(query.ray, ray);
+        ++ray_count.intersect;
+        if (!set(query.ray, ray)) [[unlikely]]
+            return false;
         query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
         query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-        ++ray_count.intersect;
         embree::intersect(scene_.get(), query);
         hit = {query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar,
                Vec3(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z)};
-        return hit.geometry != RTC_INVALID_GEOMETRY_ID;
+        return hit.geometry != RTC_INVALID_GEOMETRY_ID || missed(query.ray);
     }
 
     /// Whether anything lies between `ray.near` and `ray.far`.
     [[gnu::always_inline]] bool occluded(const Ray& ray) const {
         RTCRay query;
-        set(query, ray);
         ++ray_count.occluded;
+        if (!set(query, ray)) [[unlikely]]
+            return false;
         embree::occluded(scene_.get(), query);
-        return query.tfar < 0;
+        return query.tfar < 0 || missed(query);
     }
 
     RTCScene handle() const { return scene_.get(); }
@@ -183,11 +198,20 @@ private:
         return geometries_++;
     }
 
+    using Four [[gnu::vector_size(16)]] = float;
+    using FourBits [[gnu::vector_size(16)]] = std::int32_t;
+
+    /// False, and counted where it is the ray's fault, when Embree is not to be asked.
+    ///
     /// Writes origin and direction as whole vectors: Embree reads them so, and a read of four separate writes would stall.
-    [[gnu::always_inline]] static void set(RTCRay& query, const Ray& ray) {
-        using Four [[gnu::vector_size(16)]] = float;
-        const Four origin{ray.origin.x, ray.origin.y, ray.origin.z, ray.near};
+    [[gnu::always_inline]] static bool set(RTCRay& query, const Ray& ray) {
+        const Four origin{ray.origin.x, ray.origin.y, ray.origin.z, std::max(ray.near, 0.0f)};
         const Four direction{ray.direction.x, ray.direction.y, ray.direction.z, 0};
+        if (!is_within_limits(origin, direction)) [[unlikely]]
+            return refuse();
+        if (!(ray.far >= ray.near)) [[unlikely]]
+            // Between two numbers of which the second is smaller there is nothing to find, and nothing is wrong.
+            return ray.far < ray.near ? false : refuse();
         static_assert(offsetof(RTCRay, tnear) == 12 && offsetof(RTCRay, dir_x) == 16 && offsetof(RTCRay, time) == 28);
         std::memcpy(&query, &origin, sizeof origin);
         std::memcpy(&query.dir_x, &direction, sizeof direction);
@@ -195,6 +219,39 @@ private:
         query.mask = 0xffffffffu;
         query.id = 0;
         query.flags = 0;
+        return true;
+    }
+
+    static bool refuse() {
+        ++ray_count.refused;
+        return false;
+    }
+
+    /// False. Whether a ray has a direction at all is asked here, after Embree, where it costs those that hit something nothing.
+    [[gnu::always_inline]] static bool missed(const RTCRay& query) {
+        if (query.dir_x == 0) [[unlikely]]
+            ray_count.refused += query.dir_y == 0 && query.dir_z == 0;
+        return false;
+    }
+
+    /// Whether |a| + |b| is at most `largest_coordinate`, and a number, in the first three lanes.
+    [[gnu::always_inline]] static bool is_within_limits(const Four& a, const Four& b) {
+        constexpr FourBits no_sign{0x7fffffff, 0x7fffffff, 0x7fffffff, 0};
+        constexpr Four limit{largest_coordinate, largest_coordinate, largest_coordinate, largest_coordinate};
+        const Four sum = std::bit_cast<Four>(std::bit_cast<FourBits>(a) & no_sign) +
+                         std::bit_cast<Four>(std::bit_cast<FourBits>(b) & no_sign);
+        return lanes_set(sum <= limit) == 0xf;
+    }
+
+    /// One bit for every lane of a comparison.
+    [[gnu::always_inline]] static int lanes_set(const FourBits& comparison) {
+#if defined(__SSE2__)
+        return _mm_movemask_ps(std::bit_cast<__m128>(comparison));
+#else
+        int bits = 0;
+        for (int i = 0; i < 4; ++i) bits |= (comparison[i] & 1) << i;
+        return bits;
+#endif
     }
 
     Device device_;

@@ -2,6 +2,8 @@
 
 // The only file that includes Embree. Versions 3.13 and 4.x look the same behind it.
 
+#include <lightswitch/core/floating_point.hpp>
+
 #ifndef LIGHTSWITCH_EMBREE_MAJOR
 #if __has_include(<embree4/rtcore.h>)
 #define LIGHTSWITCH_EMBREE_MAJOR 4

@@ -86,8 +86,8 @@ public:
     }
 
     /// Estimated root mean square error of the image, as a fraction of its mean: 0.01 means that a pixel is typically off by
-    /// 1 % of the average pixel. Infinite where it is not known: before the second iteration, and for a
-    /// black image, whose light may only not have been found yet.
+    /// 1 % of the average pixel. Infinite, which is to say unknown, before the second iteration and while the image is black:
+    /// that nothing was found yet says nothing about what is there.
     double relative_error() const {
         if (iterations_ < 2) return std::numeric_limits<double>::infinity();
         DVec3 mean(0), variance(0);

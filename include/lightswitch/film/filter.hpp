@@ -50,7 +50,8 @@ struct GaussianTable {
         for (std::size_t step = cells / 2; step > 0; step /= 2) cell += cumulative[cell + step] <= u ? step : 0;
         const float fraction = (u - cumulative[cell]) / (cumulative[cell + 1] - cumulative[cell]);
         const float a = density[cell], b = density[cell + 1];
-        const float t = fraction * (a + b) / (a + std::sqrt(a * a + fraction * (b * b - a * a)));
+        // Where products are fused into sums the radicand may fall below 0.
+        const float t = fraction * (a + b) / (a + safe_sqrt(a * a + fraction * (b * b - a * a)));
         return (static_cast<float>(cell) + std::min(t, 1.0f)) * static_cast<float>(width);
     }
 

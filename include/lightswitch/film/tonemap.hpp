@@ -30,7 +30,7 @@ inline Rgb srgb(int red, int green, int blue) {
     return {channel(red), channel(green), channel(blue)};
 }
 
-/// True for a NaN. Reads the bits, so that it also works under -ffast-math.
+/// True for a NaN.
 inline bool is_nan(float x) { return (std::bit_cast<std::uint32_t>(x) & 0x7fffffffu) > 0x7f800000u; }
 
 /// What a picture shows where there is no number (NaN): magenta, which no tone mapped radiance should ever look like.

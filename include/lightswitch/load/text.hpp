@@ -2,6 +2,8 @@
 
 // What every loader needs: numbers, words, line numbers, and quotes of text that may be hostile.
 
+#include <lightswitch/core/floating_point.hpp>
+
 #include <algorithm>
 #include <array>
 #include <bit>

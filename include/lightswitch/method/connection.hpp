@@ -155,7 +155,7 @@ Rgb gather_camera_subpath(const auto& scene, const Ray& ray, auto& sampler, std:
         const float adds = max_component(connection.value) * connection.weight;
         if (adds < worth * gathered) {
             const float probability = adds / (worth * gathered);
-            if (static_cast<float>(roulette.next()) >= probability) return;
+            if (roulette.next_float() >= probability) return;
             connection.value /= probability;
         }
         if (visible(scene, connection)) add(connection, s, t);

@@ -69,20 +69,17 @@ private:
         if (c.modified == now_) return c.value;
         c.old_value = c.value;
         c.old_modified = c.modified;
-        if (large_ || c.modified < last_large_) c.value = uniform();
+        if (large_ || c.modified < last_large_) c.value = random_.next_float();
         // Many small steps in a row are one whose size grows as their square root.
         if (!large_) c.value = moved(c.value, std::sqrt(static_cast<float>(now_ - std::max(c.modified, last_large_))));
         c.modified = now_;
         return c.value;
     }
 
-    float uniform() { return static_cast<float>(random_.next() * 0x1p24) * 0x1p-24f; }
-
     /// By a distance whose logarithm is uniform (Kelemen et al., section 3.2).
     float moved(float x, float scale) {
         constexpr float longest = 1.0f / 64, log_ratio = 2.7725887f;  // the shortest is a sixteenth of it
-        const auto u = static_cast<float>(random_.next());
-        const float along = 2 * u - 1;
+        const float along = 2 * random_.next_float() - 1;
         const float distance = std::min(scale * longest * std::exp(-log_ratio * std::abs(along)), 0.5f);
         const float to = x + std::copysign(distance, along);
         const float wrapped = to - std::floor(to);

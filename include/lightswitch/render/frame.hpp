@@ -18,11 +18,11 @@
 
 namespace lightswitch {
 
-/// A value that was not finite, and how to meet it again: render that one pixel with that seed and iteration.
+/// A value or a ray that was not finite, and how to meet it again: render that one pixel with that seed and iteration.
 struct NonFinite {
     std::uint64_t iteration = 0;
     std::uint64_t seed = 0;
-    std::uint32_t pixel = 0;  ///< row * width + column
+    std::uint32_t pixel = 0;  ///< row * width + column; 0 also for what belongs to none, like a ray of a light path
 
     friend auto operator<=>(const NonFinite&, const NonFinite&) = default;
 };
@@ -33,7 +33,9 @@ struct RenderCounts {
     std::uint64_t shadow_rays = 0;  ///< visibility rays among them
     std::uint64_t paths = 0;        ///< light paths started by `Frame::paths`
     std::uint64_t splats = 0;
-    std::uint64_t non_finite = 0;              ///< contributions that were replaced by black
+    /// Contributions that were not finite, replaced by black, and rays that Embree must not see (`embree::Accelerator`), which meet
+    /// nothing.
+    std::uint64_t non_finite = 0;
     std::vector<NonFinite> first_non_finite;   ///< the first 16 of them, in the order of iteration and pixel
 };
 
@@ -49,9 +51,9 @@ struct UnitReport {
     std::uint64_t rays = 0, shadow_rays = 0, non_finite = 0;
     std::vector<NonFinite> where;  // the first of them
 
-    void note(const NonFinite& found) {
-        ++non_finite;
-        if (where.size() < max_noted) where.push_back(found);
+    void note(const NonFinite& found, std::uint64_t times = 1) {
+        non_finite += times;
+        for (; times > 0 && where.size() < max_noted; --times) [[unlikely]] where.push_back(found);
     }
 };
 
@@ -187,9 +189,12 @@ public:
                       "threads at once, so a lambda must not be `mutable`");
         counts_.paths += n;
         const IterationPoints points = points_of_pass(2 * path_passes_++ + 1);
-        run_units((n + per_unit - 1) / per_unit, units_per_wave, [&](std::uint64_t unit, Splatter& splatter, detail::UnitReport&) {
+        const auto work = [&](std::uint64_t unit, Splatter& splatter, detail::UnitReport& report) {
+            const std::uint64_t refused = embree::ray_count.refused;
             trace_paths(points, unit * per_unit, std::min((unit + 1) * per_unit, n), fn, splatter);
-        });
+            report.note({iteration_, seed_, 0}, embree::ray_count.refused - refused);
+        };
+        run_units((n + per_unit - 1) / per_unit, units_per_wave, work);
     }
 
 private:
@@ -251,16 +256,16 @@ private:
         const Vec2 position(static_cast<float>(x) + 0.5f + offset.x, static_cast<float>(y) + 0.5f + offset.y);
         const Camera& camera = scene_.camera();
         const Ray ray = camera.ray(position, camera.has_lens() ? sampler.next_2d() : Vec2(0.5f));
+        const std::uint64_t refused = embree::ray_count.refused;
         Rgb value;
         if constexpr (can_splat<F>)
             value = fn(ray, sampler, PixelContext{pixel, splatter});
         else
             value = fn(ray, sampler);
-        if (is_finite(value)) [[likely]] {
+        const bool finite = is_finite(value);
+        if (finite) [[likely]]
             film_.slot(pixel) += value;
-        } else {
-            report.note({iteration_, seed_, static_cast<std::uint32_t>(pixel)});
-        }
+        report.note({iteration_, seed_, static_cast<std::uint32_t>(pixel)}, embree::ray_count.refused - refused + !finite);
     }
 
     void gather(const std::vector<detail::UnitReport>& reports) {

@@ -2,6 +2,7 @@
 
 // The loop: iterations until the budget is spent, and nothing else.
 
+#include <lightswitch/core/error.hpp>
 #include <lightswitch/render/frame.hpp>
 #include <lightswitch/render/method.hpp>
 
@@ -13,11 +14,12 @@
 
 namespace lightswitch {
 
-/// When to stop: at whichever limit is met first. A limit of 0 is no limit; without any, 64 samples.
+/// When to stop: at whichever limit is met first. A limit of 0 is no limit; without any, 64 samples. Limits are numbers and not
+/// negative.
 struct Budget {
     int samples = 0;     ///< iterations, which for most methods are samples per pixel
     double seconds = 0;  ///< of rendering; at least one iteration is made
-    double error = 0;    ///< estimated error of the image, see `Film::relative_error`; judged from 16 iterations on
+    double error = 0;    ///< estimated error of the image, see `Film::relative_error`; judged from 16 iterations on, if not black
 };
 
 /// What an observer is told after every iteration.
@@ -96,12 +98,17 @@ public:
         film_.discard(executor_);
     }
 
+    /// The scene would be gone before the session is used.
+    Session(const SceneType&& scene, const M& method, const Settings& settings = {}) = delete;
+    Session(const SceneType&& scene, const M& method, const Settings& settings, E executor) = delete;
+
     /// Makes iterations until the budget is spent or the stop token asks for an end. Seconds count from this call; samples and
     /// error concern everything accumulated so far. What a method or an observer throws comes out of here; the whole iterations
-    /// before it are kept.
+    /// before it are kept. Throws `Error` when a limit is not one.
     void run(Budget budget) {
         using Clock = std::chrono::steady_clock;
-        if (budget.samples <= 0 && budget.seconds <= 0 && budget.error <= 0) budget.samples = 64;
+        check(budget);
+        if (budget.samples == 0 && budget.seconds == 0 && budget.error == 0) budget.samples = 64;
         const auto begin = Clock::now();
         const std::uint64_t already = film_.iterations();
         double fraction = 0;
@@ -160,6 +167,16 @@ private:
     FrameType frame(std::uint64_t iteration) {
         return {scene_, film_, executor_, scene_.film().filter, settings_.sampling, settings_.seed, iteration,
                 settings_.stop, statistics_.counts};
+    }
+
+    static void check(const Budget& budget) {
+        const auto check_limit = [](double limit, const char* what) {
+            if (!(limit >= 0))
+                throw Error(std::string("the budget of ") + what + " is " + number_text(limit) + ": give 0 for no limit");
+        };
+        check_limit(budget.samples, "samples");
+        check_limit(budget.seconds, "seconds");
+        check_limit(budget.error, "error");
     }
 
     static std::uint64_t wanted(const Budget& budget) { return static_cast<std::uint64_t>(budget.samples); }

@@ -27,6 +27,13 @@ struct BuildOptions {
 
 namespace detail {
 
+/// What the element after `count` others of its type is known by; throws when there is no number left.
+inline TypedIndex checked_index(std::size_t kind, std::size_t count, const Origin& origin, const std::string& what) {
+    if (count > TypedIndex::max_position)
+        fail(origin, "the scene has more than " + std::to_string(TypedIndex::max_position + 1) + " " + what + " of one kind");
+    return {kind, count};
+}
+
 template <class BsdfList, class LightList>
 class SceneAssembly;
 
@@ -49,6 +56,7 @@ public:
         data_.space = RenderSpace(bounds.lower, bounds.upper);
         data_.camera_id = camera_id(description.camera, description.film);
         radius_ = glm::length(data_.space.point(bounds.upper));
+        Camera camera(description.camera, description.film, data_.space, radius_);
         for (const auto& material : description.materials) add(material.bsdf, material.origin);
         for (const auto& source : description.sources) add(source.source, source.origin);
         for (const auto& shape : description.shapes)
@@ -65,7 +73,6 @@ public:
             data_.shading_normals.size() * sizeof(data_.shading_normals[0]) +
             ((std::get<std::vector<L>>(data_.lights).size() * sizeof(L)) + ... + 0));
         statistics.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        Camera camera(description.camera, description.film, data_.space, radius_);
         return {std::move(data_), std::move(camera), std::move(accelerator_)};
     }
 
@@ -83,7 +90,7 @@ private:
             fail(origin, "this scene type has no place for that surface model; add it to the scene's Bsdfs<...>");
         } else {
             auto& list = std::get<kind>(data_.bsdfs);
-            materials_.push_back(TypedIndex(kind, list.size()));
+            materials_.push_back(checked_index(kind, list.size(), origin, "surface models"));
             list.push_back(bsdf);
         }
     }
@@ -97,9 +104,9 @@ private:
             fail(origin, "this scene type has no place for that kind of light; add it to the scene's Lights<...>");
         } else {
             auto& list = std::get<kind>(data_.lights);
-            if (list.size() > TypedIndex::max_position) fail(origin, "too many lights");
+            const TypedIndex index = checked_index(kind, list.size(), origin, "lights");
             list.push_back(light);
-            return TypedIndex(kind, list.size() - 1);
+            return index;
         }
     }
 
@@ -173,12 +180,14 @@ private:
         Emitter emitter{.strength = shape.emission.value_or(Rgb(0))};
         DVec3 centroid(0);
         double mesh_area = 0, needle_area = 0;
+        bool lost = false;
         for (const auto& corners : mesh.triangles) {
             const DVec3 a = positions[corners[0]], b = positions[corners[1]], c = positions[corners[2]];
             const DVec3 cross = glm::cross(b - a, c - a);
             const double twice_area = glm::length(cross);
-            if (!(twice_area > 0)) {  // nothing can hit it, and it has no normal
+            if (!(twice_area >= smallest * smallest)) {  // nothing can hit it, and it has no normal
                 ++data_.statistics.degenerate_triangles;
+                lost = lost || has_area(mesh, corners);
                 continue;
             }
             triangles.push_back(corners);
@@ -207,6 +216,7 @@ private:
                 emitter.area += float(area);
             }
         }
+        if (triangles.empty() && lost) fail(shape.origin, "the mesh is too small to be seen beside the rest of the scene");
         if (shape.emission) {
             if (!(emitter.area > 0)) fail(shape.origin, "the light has no area");
             emitter.position = Vec3(centroid / double(emitter.area));
@@ -230,7 +240,9 @@ private:
                             .side = sphere.inward ? -1.0f : 1.0f,
                             .material = materials_[shape.material],
                             .light = {}};
-        if (!(record.radius > 0)) fail(shape.origin, "the sphere is too small to be seen beside the rest of the scene");
+        if (!(record.radius >= smallest)) fail(shape.origin, "the sphere is too small to be seen beside the rest of the scene");
+        if (!(glm::length(center) + radius <= 1.001 * radius_))
+            fail(shape.origin, "the sphere is so far from the origin that its radius is lost in the rounding of its coordinates");
         if (shape.emission) {
             record.light = add_light(SphereLight{record.center, record.radius, sphere.inward, *shape.emission, record.offset},
                                      shape.origin);
@@ -242,6 +254,16 @@ private:
         data_.spheres.push_back(record);
         spheres_.push_back({record.center, record.radius});
     }
+
+    /// Whether the triangle has an area before its corners become floats.
+    bool has_area(const Mesh& mesh, const std::array<std::uint32_t, 3>& corners) const {
+        const auto corner = [&](std::size_t i) { return data_.space.point(mesh.positions[corners[i]]); };
+        return glm::length(glm::cross(corner(1) - corner(0), corner(2) - corner(0))) > 0;
+    }
+
+    /// The radius, and edge, below which a shape in render space is no longer one: a density on it, times the square of the distance
+    /// to it, would leave the range of a float at angles that are not grazing.
+    static constexpr double smallest = 0x1p-50;
 
     /// Bound on how far from a triangle's plane Embree may see it, for a ray that starts on the plane: the rounding of the dot
     /// product of the normal with the edge from a corner to the origin. It grows with the size of the triangle, and with how thin

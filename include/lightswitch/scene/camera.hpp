@@ -17,7 +17,11 @@ namespace lightswitch {
 /// float has too few digits for an origin far away.
 class Camera {
 public:
-    /// `radius` bounds the geometry around the origin of render space.
+    /// How far away it may be, and how large its lens, as multiples of `radius`. From there a ray was seen to pass 2.5e-4 of the radius
+    /// beside where it should, in double; four times as far away that eats up the margin by which rays begin outside of the scene.
+    static constexpr double farthest = 0x1p42;
+
+    /// `radius` bounds the geometry around the origin of render space. Throws `Error` when that cannot be seen from where the camera is.
     Camera(const CameraDescription& description, const FilmDescription& film, const RenderSpace& space, double radius)
         : far_away_radius_(radius * 1.001), space_(space), lens_radius_(space.length(description.aperture_radius)),
           focus_(space.length(description.focus_distance)), near_(space.length(description.near_clip)),
@@ -29,6 +33,7 @@ public:
         position_ = space.point(DVec3(m[3]));
         const double distance = glm::length(position_);
         exact_ = distance > 4 * radius;
+        check(description.origin, radius, distance);
         set_film(description, film);
     }
 
@@ -91,6 +96,17 @@ public:
     int height() const { return height_; }
 
 private:
+    void check(const Origin& origin, double radius, double distance) const {
+        if (!(radius > 0)) return;  // there is nothing to see
+        const auto check_ratio = [&](double length, double unit, const std::string& what) {
+            if (!(length <= farthest * unit))
+                fail(origin, what + " (" + number_text(length / unit) + " times; at most " + number_text(farthest) + ")");
+        };
+        check_ratio(distance, radius, "the camera is too far away beside the size of the scene");
+        check_ratio(lens_radius_, radius, "the camera's aperture is too large beside the size of the scene");
+        check_ratio(lens_radius_, focus_, "the camera's aperture is too large beside its focus distance");
+    }
+
     void set_film(const CameraDescription& description, const FilmDescription& film) {
         width_ = film.width;
         height_ = film.height;
@@ -127,7 +143,9 @@ private:
         const DVec3 direction = along / per_axis;
         double near = near_ * per_axis;
         const double far = far_ * per_axis;
-        if (exact_) near = std::max(near, glm::length(origin) - far_away_radius_);
+        const double to_center = glm::length(origin);
+        if (exact_) near = std::max(near, to_center - far_away_radius_);
+        near = std::min(near, to_center + far_away_radius_);  // beyond it there is nothing
         const double length = far - near;
         return {.origin = Vec3(origin + near * direction),
                 .direction = Vec3(direction),

@@ -10,9 +10,6 @@
 
 namespace lightswitch::detail {
 
-inline bool is_finite(double x) { return std::abs(x) <= std::numeric_limits<double>::max(); }
-inline bool is_finite(const DVec3& v) { return is_finite(v.x) && is_finite(v.y) && is_finite(v.z); }
-
 /// Coordinates beyond this would overflow when they are squared.
 inline constexpr double largest_coordinate = 1e100;
 
@@ -23,7 +20,7 @@ inline void check_position(const DVec3& p, const Origin& origin, const std::stri
 
 inline void check_radiance(const Rgb& value, const Origin& origin, const std::string& what) {
     for (int c = 0; c < 3; ++c) {
-        if (!lightswitch::is_finite(value[c])) fail(origin, what + " is not a finite number");
+        if (!is_finite(value[c])) fail(origin, what + " is not a finite number");
         if (value[c] < 0) fail(origin, what + " is negative");
         if (value[c] > 1e30f) fail(origin, what + " is above 1e30");
     }
@@ -49,7 +46,7 @@ inline void check(const Mesh& mesh, const Origin& origin) {
 inline void check(const Sphere& sphere, const Origin& origin) {
     check_position(sphere.center, origin, "the sphere's centre");
     if (!is_finite(sphere.radius) || !(sphere.radius > 0) || sphere.radius > largest_coordinate)
-        fail(origin, "the sphere's radius of " + std::to_string(sphere.radius) + " is not a positive length");
+        fail(origin, "the sphere's radius of " + number_text(sphere.radius) + " is not a positive length");
 }
 
 inline void check(const PointSource& source, const Origin& origin) {
@@ -67,13 +64,8 @@ inline void check(const EnvironmentSource& source, const Origin& origin) {
 
 inline void check(const CameraDescription& camera) {
     const Origin& origin = camera.origin;
-    const auto number = [](double x) {
-        char text[32];
-        std::snprintf(text, sizeof text, "%g", x);
-        return std::string(text);
-    };
     if (!(camera.fov > 0 && camera.fov < 180))
-        fail(origin, "a field of view of " + number(camera.fov) + " degrees is not between 0 and 180");
+        fail(origin, "a field of view of " + number_text(camera.fov) + " degrees is not between 0 and 180");
     for (int column = 0; column < 4; ++column)
         check_position(DVec3(camera.to_world[column]), origin, "the camera's transform");
     for (int i = 0; i < 3; ++i) {
@@ -82,9 +74,9 @@ inline void check(const CameraDescription& camera) {
         if (std::abs(glm::dot(a, b)) > 1e-3) fail(origin, "the camera's transform must not contain a shear");
     }
     if (!(camera.aperture_radius >= 0) || !is_finite(camera.aperture_radius))
-        fail(origin, "the aperture radius of " + number(camera.aperture_radius) + " is not a length");
+        fail(origin, "the aperture radius of " + number_text(camera.aperture_radius) + " is not a length");
     if (!(camera.focus_distance > 0) || !is_finite(camera.focus_distance))
-        fail(origin, "the focus distance of " + number(camera.focus_distance) + " is not a positive length");
+        fail(origin, "the focus distance of " + number_text(camera.focus_distance) + " is not a positive length");
     if (!(camera.near_clip >= 0) || !(camera.far_clip > camera.near_clip))
         fail(origin, "near_clip must not be negative, and far_clip must be larger");
 }

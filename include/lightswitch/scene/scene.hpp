@@ -26,6 +26,9 @@ class Scene;
 template <class... B, class... L>
 class Scene<Bsdfs<B...>, Lights<L...>> {
 public:
+    static_assert(sizeof...(B) <= TypedIndex::kinds, "a scene type holds at most 31 kinds of surface models");
+    static_assert(sizeof...(L) <= TypedIndex::kinds, "a scene type holds at most 31 kinds of lights");
+
     using Data = detail::SceneData<Bsdfs<B...>, Lights<L...>>;
     static constexpr bool has_environment = (EnvironmentLight<L> || ...);
 
