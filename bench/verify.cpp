@@ -71,7 +71,7 @@ int alarms(int runs) {
         const ls::Verdict v = ls::verify(sides[i].first, sides[i].second, options);
         ++made[i];
         alarms[i] += v.disagrees();
-        if (v.disagrees()) std::cout << pairs[i].name << ", seed " << options.seed << ": " << v;
+        if (v.disagrees()) std::cout << pairs[i].name << ", " << pairs[i].scene << ", seed " << options.seed << ": " << v << std::flush;
         if (run / static_cast<int>(pairs.size()) % 4 != 0) continue;
         options.confidence = 0.9;  // a rate that so many runs can show
         ++lax_made[i];

@@ -286,9 +286,10 @@ int verify(const VerifyCommand& command) {
     VerifyOptions options = command.options;
     options.stop = cancellation.token();
     options.observer = [&](const VerifyProgress& progress) {
-        const std::string forecast = progress.seconds_to_decide > 0 && progress.seconds_to_decide < 1e5
-                                         ? fmt::format("; decided after about {:.2g} s", progress.seconds_to_decide)
-                                         : "";
+        const std::string forecast =
+            progress.seconds_to_decide > 0
+                ? fmt::format("; decided after about {}", detail::rounded_duration(progress.seconds_to_decide))
+                : "";
         line.update(progress.seconds, fmt::format("{:.0f} s of at most {:.0f} s: {}, {} images{}", progress.seconds,
                                                   options.seconds, progress.method, progress.images, forecast));
     };

@@ -11,6 +11,14 @@
 
 namespace lightswitch::detail {
 
+/// Such as "40 seconds" or "3 hours".
+inline std::string rounded_duration(double seconds) {
+    if (seconds < 120) return format("%.0f seconds", seconds);
+    if (seconds < 7200) return format("%.0f minutes", seconds / 60);
+    if (seconds < 172800) return format("%.0f hours", seconds / 3600);
+    return format("%.0f days", seconds / 86400);
+}
+
 /// The shortest length whose image differs, at a level that is not divided among looks: that there is a
 /// difference is known. 0 when there is none.
 inline int first_wrong_length(const Verdict& v, double confidence) {
@@ -92,8 +100,8 @@ inline void answer(Subject& s, const VerifyOptions& options) {
         v.reason += s.rare  ? "the images rest on few rare bright paths."
                     : fixed ? "more images are needed."
                             : "more time is needed.";
-        if (!fixed && v.seconds_to_decide > 0 && v.seconds_to_decide < 1e6)
-            v.reason += format(" About %.2g seconds in all would probably do.", v.seconds_to_decide);
+        if (!fixed && v.seconds_to_decide > 0)
+            v.reason += " About " + rounded_duration(v.seconds_to_decide) + " in all would probably do.";
         if (s.stuck) {
             const Verdict::Part& whole = v.parts.front();
             v.reason += format(

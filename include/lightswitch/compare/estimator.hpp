@@ -50,6 +50,7 @@ struct Estimator {
 /// the longest path as in `PathLength`: 1 is emission seen directly, 2 adds direct light, -1 is unlimited.
 template <class SceneType, class M>
 Estimator estimator(const SceneType& scene, const M& method, const Settings& settings = {}) {
+    static_assert(detail::RequireScene<SceneType>::value);
     constexpr bool limits_depth = requires(M m) { m.max_depth = 1; };
     Estimator result;
     result.name = std::string(M::name);

@@ -19,7 +19,9 @@ namespace lightswitch {
 struct Budget {
     int samples = 0;     ///< iterations, which for most methods are samples per pixel
     double seconds = 0;  ///< of rendering; at least one iteration is made
-    double error = 0;    ///< estimated error of the image, see `Film::relative_error`; judged from 16 iterations on, if not black
+    /// Estimated error of the image, see `Film::relative_error`; judged from 16 iterations on. That of a black image is unknown: where
+    /// there may be no light at all, set another limit, too.
+    double error = 0;
 };
 
 /// What an observer is told after every iteration.
