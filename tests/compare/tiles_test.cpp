@@ -1,8 +1,11 @@
 #include <lightswitch/compare/tiles.hpp>
 
+#include "../support/relative.hpp"
+
 #include <doctest/doctest.h>
 
 using namespace lightswitch;
+using test::relative;
 
 TEST_CASE("the tiles of every level cover the image once, and fine tiles lie in coarse ones") {
     for (const auto& [width, height] : {std::pair(128, 128), {1, 1}, {7, 3}, {40, 9}, {1000, 3}, {65, 130}}) {
@@ -48,19 +51,19 @@ TEST_CASE("the moments of tiles are those of their pixels' means") {
     CHECK(moments.count() == 5);
     CHECK(layout.levels() == 2);
     const auto whole = moments.estimates(0)[0];
-    CHECK(whole[0].mean == doctest::Approx(4 * 6));  // mean of x times mean of 0, 1, 4, 9, 16
-    CHECK(whole[1].mean == doctest::Approx(3.5));
+    CHECK(whole[0].mean == relative(4 * 6, 1e-5));  // mean of x times mean of 0, 1, 4, 9, 16
+    CHECK(whole[1].mean == relative(3.5, 1e-5));
     CHECK(whole[1].variance == 0);
     CHECK(whole[2].mean == 1.5);
     const auto fine = moments.estimates(1);
     REQUIRE(fine.size() == 4);
-    CHECK(fine[0][0].mean == doctest::Approx(1.5 * 6));  // columns 0 to 3
-    CHECK(fine[1][0].mean == doctest::Approx(6 * 6));    // columns 4 to 8
-    CHECK(fine[2][1].mean == doctest::Approx(6));        // rows 5 to 9, less 1
+    CHECK(fine[0][0].mean == relative(1.5 * 6, 1e-5));  // columns 0 to 3
+    CHECK(fine[1][0].mean == relative(6 * 6, 1e-5));    // columns 4 to 8
+    CHECK(fine[2][1].mean == relative(6, 1e-5));        // rows 5 to 9, less 1
     // Its own variance of the mean, and a share of the average tile's for what it may have missed: n x n has the
     // variance 43.5, as an estimate of the variance from five.
     const auto variance = [](double x) { return x * x * 43.5 / 5; };
     const double pooled = (2 * variance(1.5) + 2 * variance(6)) / 4;
-    CHECK(fine[0][0].variance == doctest::Approx(variance(1.5) + 0.8 * pooled));  // 4 / n images
-    CHECK(fine[1][0].variance == doctest::Approx(variance(6) + 0.8 * pooled));
+    CHECK(fine[0][0].variance == relative(variance(1.5) + 0.8 * pooled, 1e-5));  // 4 / n images
+    CHECK(fine[1][0].variance == relative(variance(6) + 0.8 * pooled, 1e-5));
 }

@@ -1,6 +1,7 @@
 #include <lightswitch/core/sampler.hpp>
 
 #include "../support/chi_square.hpp"
+#include "../support/relative.hpp"
 #include "../support/statistics.hpp"
 
 #include <doctest/doctest.h>
@@ -10,6 +11,7 @@
 #include <vector>
 
 using namespace lightswitch;
+using test::relative;
 using test::chi_square;
 using test::Mean;
 using test::UniformCorrelation;
@@ -356,7 +358,7 @@ TEST_CASE("sampler: Sobol' points integrate a smooth function with less error, a
     CAPTURE(errors[0]);
     CAPTURE(errors[1]);
     // The deviation of f is 0.2345; 400 pixels estimate the error to 4 %, so this allows 6 standard errors.
-    CHECK(errors[1] == doctest::Approx(0.2345 / 16).epsilon(0.24));
+    CHECK(errors[1] == relative(0.2345 / 16, 0.24));
     CHECK(errors[0] * 3 < errors[1]);
 
     for (const Sampling sampling : both)

@@ -2,6 +2,7 @@
 #include <lightswitch/embree/accelerator.hpp>
 
 #include "../support/chi_square.hpp"
+#include "../support/relative.hpp"
 
 #include <doctest/doctest.h>
 
@@ -10,6 +11,7 @@
 #include <vector>
 
 using namespace lightswitch;
+using test::relative;
 using test::Random;
 
 namespace {
@@ -171,7 +173,7 @@ TEST_CASE("embree: geometries are numbered in the order in which they were added
     REQUIRE(accelerator.intersect(Ray{.origin = {10, 0, 0}}, hit));
     CHECK(hit.geometry == 5);
     CHECK(hit.primitive == 1);
-    CHECK(hit.distance == doctest::Approx(2));
+    CHECK(hit.distance == relative(2, 1e-5));
 }
 
 TEST_CASE("embree: an empty scene is free everywhere") {

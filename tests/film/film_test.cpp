@@ -1,3 +1,4 @@
+#include "support/relative.hpp"
 #include "support/renders.hpp"
 
 #include <doctest/doctest.h>
@@ -79,12 +80,12 @@ TEST_CASE("slots and splats of an iteration add up, and iterations are averaged"
     CHECK(image(2, 1) == Rgb(5));
     CHECK(image(0, 0) == Rgb(0));
     // 1, 2, 4, 9: squared deviations from the mean add up to 38, over 4 * 3.
-    CHECK(variance(1, 0).x == doctest::Approx(38.0 / 12));
-    CHECK(variance(1, 0).y == doctest::Approx(4 * 38.0 / 12));
+    CHECK(variance(1, 0).x == relative(38.0 / 12, 1e-5));
+    CHECK(variance(1, 0).y == relative(4 * 38.0 / 12, 1e-5));
     CHECK(variance(1, 0).z == 0);
-    CHECK(variance(2, 1).x == doctest::Approx(38.0 / 12));
+    CHECK(variance(2, 1).x == relative(38.0 / 12, 1e-5));
     // Mean level (14 + 18 + 10 + 15) / 18; mean square error 38/12 * (1 + 4 + 3) / 18.
-    CHECK(film.relative_error() == doctest::Approx(std::sqrt(38.0 / 12 * 8 / 18) / (57.0 / 18)));
+    CHECK(film.relative_error() == relative(std::sqrt(38.0 / 12 * 8 / 18) / (57.0 / 18), 1e-5));
 }
 
 TEST_CASE("the error of a black image is not known") {
@@ -149,7 +150,7 @@ TEST_CASE("the variance of a known distribution") {
     // Five standard errors each: 6e-7. The mean of the squared errors of binomial numbers scatters like chi-square.
     CHECK(std::abs(mean - exact) < 5 * error_of_mean);
     CHECK(std::abs(errors / n - exact) < 5 * exact * std::sqrt(2 / n));
-    CHECK(session.film().relative_error() == doctest::Approx(std::sqrt(exact) / p).epsilon(0.05));
+    CHECK(session.film().relative_error() == relative(std::sqrt(exact) / p, 0.05));
 }
 
 TEST_CASE("Sobol' points put the right share of every pixel's samples into an interval") {
@@ -161,7 +162,7 @@ TEST_CASE("Sobol' points put the right share of every pixel's samples into an in
     // shift.
     for (const Rgb& p : session.film().image().pixels()) CHECK(p.x == 0.25f);
     // The estimate from the spread knows nothing of that.
-    CHECK(session.film().variance().mean().x == doctest::Approx(0.25 * 0.75 / 63).epsilon(1e-6));
+    CHECK(session.film().variance().mean().x == relative(0.25 * 0.75 / 63, 1e-6));
 }
 
 TEST_CASE("values that are not finite are counted, named and replaced by black") {
@@ -309,7 +310,7 @@ TEST_CASE("splats go through the film's filter: a constant stays constant up to 
         CAPTURE(filter.radius());
         const Image image = splatted(filter, [](const Vec2&) { return 1.0f; });
         // The midpoint rule is exact for tents that begin between the splats, and nearly so for smooth weights.
-        for (const Rgb& p : image.pixels()) CHECK(p.x == doctest::Approx(1).epsilon(3e-3));
+        for (const Rgb& p : image.pixels()) CHECK(p.x == relative(1, 3e-3));
     }
 }
 
@@ -353,8 +354,8 @@ TEST_CASE("a splat spreads to the pixels within the filter's radius, by its weig
         for (int y = 0; y < 4; ++y)
             for (int x = 0; x < 16; ++x) {
                 const float weight = filter.pdf(at - Vec2(float(x) + 0.5f, float(y) + 0.5f));
-                CHECK(image(x, y).x == doctest::Approx(double(weight)));
-                CHECK(image(x, y).z == doctest::Approx(4 * double(weight)));
+                CHECK(image(x, y).x == relative(double(weight), 1e-5));
+                CHECK(image(x, y).z == relative(4 * double(weight), 1e-5));
             }
     }
     // Not finite, value or place: counted once, whatever the number of pixels. Far away: nothing.

@@ -1,5 +1,6 @@
 // Light paths start with the density that is stated, carry the power that light sampling finds, and spread as stated.
 
+#include "../support/relative.hpp"
 #include "../support/scenes.hpp"
 #include "../support/statistics.hpp"
 
@@ -94,11 +95,11 @@ TEST_CASE("emission: paths start on a rectangle with the density that is stated"
         REQUIRE(scene.light_number(at->light) == scene.light_number(e.light));
         const double cosine = double(dot(at->normal, e.ray.direction));
         // Both triangles are as large, so that the density is even over the rectangle.
-        CHECK(double(e.pdf.value) == doctest::Approx(cosine / (pi_d * area)).epsilon(1e-4));
+        CHECK(double(e.pdf.value) == relative(cosine / (pi_d * area), 1e-4));
         CHECK(double(scene.emission_pdf(*at, e.ray.direction).value) ==
-              doctest::Approx(double(e.pdf.value)).epsilon(1e-4));
-        CHECK(double(e.cosine) == doctest::Approx(cosine).epsilon(1e-4));
-        CHECK(double(e.weight.y) == doctest::Approx(2 * cosine / double(e.pdf.value)).epsilon(1e-4));
+              relative(double(e.pdf.value), 1e-4));
+        CHECK(double(e.cosine) == relative(cosine, 1e-4));
+        CHECK(double(e.weight.y) == relative(2 * cosine / double(e.pdf.value), 1e-4));
         CHECK_FALSE(e.dirac);
         const DVec3 on = DVec3(at->position) - corner;
         const Vec3 local = Basis(at->normal).to_local(e.ray.direction);
@@ -120,16 +121,16 @@ TEST_CASE("emission: paths start on a sphere, outside or inside, with the densit
             const DVec3 outward = glm::normalize(DVec3(e.ray.origin) - center), normal = inward ? -outward : outward;
             const double cosine = glm::dot(normal, DVec3(e.ray.direction));
             REQUIRE(cosine > 0);
-            CHECK(glm::length(DVec3(e.ray.origin) - center) == doctest::Approx(radius).epsilon(1e-4));
-            CHECK(double(e.pdf.value) == doctest::Approx(cosine / (pi_d * area)).epsilon(1e-3));
-            CHECK(double(e.cosine) == doctest::Approx(cosine).epsilon(1e-3));
-            CHECK(double(e.weight.y) == doctest::Approx((inward ? 1 : 3) * pi_d * area).epsilon(1e-3));
+            CHECK(glm::length(DVec3(e.ray.origin) - center) == relative(radius, 1e-4));
+            CHECK(double(e.pdf.value) == relative(cosine / (pi_d * area), 1e-3));
+            CHECK(double(e.cosine) == relative(cosine, 1e-3));
+            CHECK(double(e.weight.y) == relative((inward ? 1 : 3) * pi_d * area, 1e-3));
             SurfacePoint at;
             at.position = e.ray.origin;
             at.normal = Vec3(normal);
             at.light = e.light;
             CHECK(double(scene.emission_pdf(at, e.ray.direction).value) ==
-                  doctest::Approx(double(e.pdf.value)).epsilon(1e-3));
+                  relative(double(e.pdf.value), 1e-3));
             const Vec3 local = Basis(Vec3(normal)).to_local(e.ray.direction);
             cube.add(0.5 + 0.5 * outward.z, turn_of(outward.x, outward.y), cosine * cosine, turn_of(local.x, local.y));
         }
@@ -154,8 +155,8 @@ TEST_CASE("emission: a point sends paths everywhere, a sun and a sky through all
             const double z = 0.5 + 0.5 * d.z, around = turn_of(d.x, d.y);
             if (kind == "point") {
                 CHECK(glm::length(o - scene.space().point({0.2, 0.6, -0.1})) < 1e-6);
-                CHECK(double(e.pdf.value) == doctest::Approx(1 / (4 * pi_d)));
-                CHECK(double(e.weight.y) == doctest::Approx(1.5 * 4 * pi_d));
+                CHECK(double(e.pdf.value) == relative(1 / (4 * pi_d), 1e-5));
+                CHECK(double(e.weight.y) == relative(1.5 * 4 * pi_d, 1e-5));
                 cube.add(z, around, std::fmod(16 * z, 1.0), std::fmod(16 * around, 1.0));
                 continue;
             }
@@ -166,7 +167,7 @@ TEST_CASE("emission: a point sends paths everywhere, a sun and a sky through all
             CHECK(glm::dot(o, d) < -std::sqrt(3.0) * 0.9998);  // begins outside
             CHECK(glm::length(across) < radius * (1 + 1e-5));
             const double disk = 1 / (pi_d * radius * radius);
-            CHECK(double(e.pdf.value) == doctest::Approx(kind == "sun" ? disk : disk / (4 * pi_d)).epsilon(1e-4));
+            CHECK(double(e.pdf.value) == relative(kind == "sun" ? disk : disk / (4 * pi_d), 1e-4));
             const Basis basis(-e.ray.direction);
             const double x = glm::dot(across, DVec3(basis.tangent)), y = glm::dot(across, DVec3(basis.bitangent));
             const double r2 = (x * x + y * y) / (radius * radius), angle = turn_of(x, y);
@@ -175,7 +176,7 @@ TEST_CASE("emission: a point sends paths everywhere, a sun and a sky through all
                 cube.add(r2, angle, std::fmod(16 * r2, 1.0), std::fmod(16 * angle, 1.0));
             } else {
                 CHECK(double(scene.environment_emission_pdf().value) ==
-                      doctest::Approx(double(e.pdf.value)).epsilon(1e-5));
+                      relative(double(e.pdf.value), 1e-5));
                 cube.add(z, around, r2, angle);
             }
         }
@@ -210,10 +211,10 @@ TEST_CASE("emission: the density includes the choice among lights") {
                 at.normal = {0, 0, 1};
                 return double(scene.emission_pdf(at, {std::sqrt(1 - e.cosine * e.cosine), 0, e.cosine}).value);
             }();
-            CHECK(density == doctest::Approx(double(e.pdf.value)).epsilon(1e-3));
+            CHECK(density == relative(double(e.pdf.value), 1e-3));
         }
     }
-    CHECK(std::accumulate(claimed.begin(), claimed.end(), 0.0) == doctest::Approx(1).epsilon(1e-4));
+    CHECK(std::accumulate(claimed.begin(), claimed.end(), 0.0) == relative(1, 1e-4));
     for (double& c : claimed) c *= 100000;
     CHECK(chi_square(chosen, claimed).p_value > level);
 }
@@ -287,10 +288,10 @@ TEST_CASE("emission: the spread is the ratio of the densities of sampling and of
             const auto hit = scene.intersect(Ray{.origin = at.position, .direction = s.wi});
             if (hit && hit->light && !scene.infinite(hit->light) && dot(hit->normal, s.wi) < -0.05f)
                 CHECK(double(scene.spread(hit->light, at, s.wi, hit->position)) ==
-                      doctest::Approx(double(s.spread)).epsilon(2e-3));
+                      relative(double(s.spread), 2e-3));
             if (!hit)
                 CHECK(double(scene.spread(light, at, s.wi, Vec3(0))) ==
-                      doctest::Approx(double(s.spread)).epsilon(1e-4));
+                      relative(double(s.spread), 1e-4));
         }
         for (int i = 0; i < 1000000; ++i) {
             const LightEmission e = emit(scene, random);

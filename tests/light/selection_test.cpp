@@ -1,5 +1,6 @@
 // Lights are chosen half in proportion to the flux that they bring, and half evenly among what was described as one light.
 
+#include "../support/relative.hpp"
 #include "../support/scenes.hpp"
 
 #include <doctest/doctest.h>
@@ -63,7 +64,7 @@ TEST_CASE("light selection: by flux and evenly, and the probabilities are those 
     int dirac = 0;
     for (int i = 0; i < steps; ++i)
         dirac += scene.sample_light(from, (static_cast<float>(i) + 0.5f) / steps, {0.3f, 0.6f}).dirac;
-    CHECK(dirac / double(steps) == doctest::Approx(expected[1] + expected[2]).epsilon(1e-3));
+    CHECK(dirac / double(steps) == relative(expected[1] + expected[2], 1e-3));
 
     std::size_t number = 0;
     for (std::size_t kind = 0; kind < 5; ++kind) {
@@ -73,13 +74,13 @@ TEST_CASE("light selection: by flux and evenly, and the probabilities are those 
     }
     // The point light's density is its probability of being chosen, the environment's contains it.
     const Vec3 up(0, 0, 1);
-    CHECK(double(scene.environment_pdf(up, up).value) == doctest::Approx(expected[0] / pi_d).epsilon(1e-5));
+    CHECK(double(scene.environment_pdf(up, up).value) == relative(expected[0] / pi_d, 1e-5));
     bool point_seen = false;
     for (int i = 0; i < steps; ++i) {
         const LightSample s = scene.sample_light(from, (static_cast<float>(i) + 0.5f) / steps, {0.3f, 0.6f});
         if (!s.dirac || s.wi.z > 0.999f) continue;
         point_seen = true;
-        CHECK(double(s.pdf.value) == doctest::Approx(expected[2]).epsilon(1e-5));
+        CHECK(double(s.pdf.value) == relative(expected[2], 1e-5));
         break;
     }
     CHECK(point_seen);
@@ -93,13 +94,13 @@ TEST_CASE("light selection: the density of a hit contains the probability of its
     const auto hit = scene.intersect(Ray{.origin = from, .direction = down});
     REQUIRE(hit);
     CHECK(double(scene.light_pdf(from, down, *hit).value) ==
-          doctest::Approx(expected[5] * 0.25 * 0.25 / 0.04).epsilon(1e-4));
+          relative(expected[5] * 0.25 * 0.25 / 0.04, 1e-4));
     // The sphere, seen from distance 0.5 of its centre.
     const Vec3 at(Vec3(scene.space().point({-0.5, 0, 0.5})));
     const auto ball = scene.intersect(Ray{.origin = at, .direction = down});
     REQUIRE(ball);
     CHECK(double(scene.light_pdf(at, down, *ball).value) ==
-          doctest::Approx(expected[3] / (2 * pi_d * (1 - std::sqrt(1 - 0.04)))).epsilon(1e-4));
+          relative(expected[3] / (2 * pi_d * (1 - std::sqrt(1 - 0.04))), 1e-4));
 }
 
 TEST_CASE("light selection: emitters sum up what was described, in the order of sources and shapes") {
@@ -114,19 +115,19 @@ TEST_CASE("light selection: emitters sum up what was described, in the order of 
     };
     const Emitter quad = of(Emitter::Kind::surface, 0);
     CHECK(quad.strength == Rgb(3, 2, 1));
-    CHECK(quad.area == doctest::Approx(0.08));
-    CHECK(quad.vector_area.z == doctest::Approx(0.08));
+    CHECK(quad.area == relative(0.08, 1e-5));
+    CHECK(quad.vector_area.z == relative(0.08, 1e-5));
     CHECK(glm::length(quad.position - Vec3(0, 0, 0.5f)) < 1e-6f);
     CHECK(quad.first_light == 5);
     CHECK(quad.light_count == 2);
     const Emitter ball = of(Emitter::Kind::surface, 1);
-    CHECK(ball.area == doctest::Approx(4 * pi_d * 0.01));
+    CHECK(ball.area == relative(4 * pi_d * 0.01, 1e-5));
     CHECK(ball.first_light == 3);
     CHECK(ball.light_count == 1);
     const Emitter wings = of(Emitter::Kind::surface, 2);
-    CHECK(wings.area == doctest::Approx(0.045));
-    CHECK(wings.vector_area.z == doctest::Approx(0.015));
-    CHECK(wings.vector_area.x == doctest::Approx(0.03));
+    CHECK(wings.area == relative(0.045, 1e-5));
+    CHECK(wings.vector_area.z == relative(0.015, 1e-5));
+    CHECK(wings.vector_area.x == relative(0.03, 1e-5));
     CHECK(wings.first_light == 7);
     CHECK(of(Emitter::Kind::surface, 3).first_light == 4);
     CHECK(of(Emitter::Kind::environment).first_light == 0);
@@ -137,7 +138,7 @@ TEST_CASE("light selection: emitters sum up what was described, in the order of 
     const Emitter lamp = of(Emitter::Kind::point);
     CHECK(lamp.first_light == 2);
     CHECK(glm::length(lamp.position - Vec3(0.5f)) < 1e-6f);
-    CHECK(lamp.strength.x == doctest::Approx(0.1));
+    CHECK(lamp.strength.x == relative(0.1, 1e-5));
 }
 
 TEST_CASE("light selection: a light without strength is never chosen, and a scene without light stays black") {

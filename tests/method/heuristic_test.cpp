@@ -1,6 +1,7 @@
 // Silhouette and Phong: pictures that nothing physical can judge, but geometry can.
 
 #include "support/random_scenes.hpp"
+#include "support/relative.hpp"
 #include "support/renders.hpp"
 
 #include <lightswitch/method/path_tracer_nee.hpp>
@@ -56,8 +57,8 @@ TEST_CASE("the silhouette of a rectangle covers the right part of each pixel") {
             // Quarters of a pixel hold their share of 256 Sobol' points exactly, up to one that the rounding of the
             // camera moves.
             CHECK(std::abs(double(image(x, y).y) - across * down) <= 1.0 / 256 + 1e-9);
-            CHECK(image(x, y).x == doctest::Approx(0.25 * double(image(x, y).y)));
-            CHECK(image(x, y).z == doctest::Approx(2 * double(image(x, y).y)));
+            CHECK(image(x, y).x == relative(0.25 * double(image(x, y).y), 1e-5));
+            CHECK(image(x, y).z == relative(2 * double(image(x, y).y), 1e-5));
         }
 }
 
@@ -69,7 +70,7 @@ TEST_CASE("the silhouette of a sphere is a disk, and everything from inside") {
     const double tangent = std::tan(std::asin(1.0 / 3)) / std::tan(std::numbers::pi / 6);
     // 64 x 64 pixels of 64 points: the boundary crosses some 150 pixels, which err by 1/64 each: 5e-5 of the whole.
     CHECK(render(build(description), Silhouette{}, {.samples = 64}).mean().x ==
-          doctest::Approx(std::numbers::pi / 4 * tangent * tangent).epsilon(5e-4));
+          relative(std::numbers::pi / 4 * tangent * tangent, 5e-4));
     description.camera.to_world = CameraDescription::look_at({0.2, 0.3, 3}, {0, 0, 9}, {0, 1, 0});
     CHECK(render(build(description), Silhouette{}, {.samples = 4}).mean() == DVec3(1, 0, 1));
 }
@@ -107,7 +108,7 @@ TEST_CASE("on a diffuse plane Phong is exact for point and directional lights, a
         CHECK(added >= 0);
         CHECK((added > 0) == !std::holds_alternative<EnvironmentSource>(source));
         for (std::size_t i = 0; i < ambient.pixels().size(); ++i)
-            CHECK(double(ambient.pixels()[i].y - phong.pixels()[i].y) == doctest::Approx(added).epsilon(1e-3));
+            CHECK(double(ambient.pixels()[i].y - phong.pixels()[i].y) == relative(added, 1e-3));
     };
     check(PointSource{{0.5, -1, 3}, Rgb(4)});
     check(DirectionalSource{{1, 1, -2}, Rgb(3)});
@@ -117,7 +118,7 @@ TEST_CASE("an environment lights a diffuse plane exactly") {
     LibraryDescription description = describe_plane();
     description.add(EnvironmentSource{Rgb(0.6f)});
     for (const Rgb& p : render(build(description), no_ambient, {.samples = 1}).pixels())
-        CHECK(p.y == doctest::Approx(0.3));
+        CHECK(p.y == relative(0.3, 1e-5));
 }
 
 TEST_CASE("on a diffuse plane Phong is nearly exact for small lamps") {
@@ -170,11 +171,10 @@ TEST_CASE("Phong's shadows are hard and where they belong") {
                 } else {
                     ++lit;  // the full light or none
                     CHECK(value ==
-                          doctest::Approx(no_ambient.radiance(open, open.camera().ray(position, {}), sampler).y)
-                              .epsilon(1e-4));
+                          relative(no_ambient.radiance(open, open.camera().ray(position, {}), sampler).y, 1e-4));
                 }
             }
-        CHECK(double(lit) / (lit + dark) == doctest::Approx(lit_share).epsilon(5e-3));
+        CHECK(double(lit) / (lit + dark) == relative(lit_share, 5e-3));
     };
     // The square hides (10/9)^2 of the 16 that are seen. Light from the side, 45 degrees: the shadow is a unit square
     // shifted by 1 in x, of which the part from 0.5 to 5/9 is hidden too.
@@ -190,7 +190,7 @@ TEST_CASE("Phong lights the side that is seen") {
         if (flipped) mesh = mesh.flipped();
         description.add(DirectionalSource{{0, 0, -1}, Rgb(2)});
         for (const Rgb& p : render(build(description), no_ambient, {.samples = 1}).pixels())
-            CHECK(p.y == doctest::Approx(std::numbers::inv_pi));
+            CHECK(p.y == relative(std::numbers::inv_pi, 1e-5));
         description.sources.clear();
         description.add(DirectionalSource{{0, 0, 1}, Rgb(2)});  // from behind
         CHECK(render(build(description), no_ambient, {.samples = 1}).mean().y == 0);
@@ -217,6 +217,6 @@ TEST_CASE("a highlight is where a mirror would show the light, and the picture i
                     .y;
             };
             CHECK(value(static_cast<float>(x) + 0.5f) ==
-                  doctest::Approx(value(15.5f - static_cast<float>(x))).epsilon(1e-3));
+                  relative(value(15.5f - static_cast<float>(x)), 1e-3));
         }
 }

@@ -1,5 +1,6 @@
 // Photon mapping and vertex merging: right where theory knows the image, close to it elsewhere.
 
+#include "../support/relative.hpp"
 #include "nearly.hpp"
 
 using namespace lightswitch;
@@ -81,10 +82,10 @@ TEST_CASE("photons: where nothing can be connected, vcm is photon mapping") {
 
 TEST_CASE("photons: the radius shrinks by the law of Knaus and Zwicker, and starts as wide as a pixel") {
     const MergeRadius radius{.pixels = 3, .alpha = 0.75f};
-    CHECK(double(radius.at(0, 0.5)) == doctest::Approx(1.5));
+    CHECK(double(radius.at(0, 0.5)) == relative(1.5, 1e-5));
     for (const std::uint64_t n : {2u, 16u, 1000u})
         CHECK(std::pow(double(radius.at(n - 1, 0.5)) / 1.5, 2) ==
-              doctest::Approx(std::pow(double(n), -0.25)).epsilon(1e-5));
+              relative(std::pow(double(n), -0.25), 1e-5));
 
     // A wall across the view at distance 2, where the middle of the pixels is 2 * 2 tan(30 degrees) / 16 wide, in scene
     // units. Across the ray they are smaller by the root of the cosine, which is 0.91 at the median distance from the
@@ -94,7 +95,7 @@ TEST_CASE("photons: the radius shrinks by the law of Knaus and Zwicker, and star
     scenes::look(description, {0, 0, 0}, {0, 0, -1}, 60);
     const FullScene scene = build_scene<AllBsdfs, AllLights>(scenes::on_small_film(description));
     const double width = 4 * std::tan(std::numbers::pi / 6) / 16;
-    CHECK(pixel_footprint(scene) == doctest::Approx(std::sqrt(0.908) * double(scene.length(width))).epsilon(2e-3));
+    CHECK(pixel_footprint(scene) == relative(std::sqrt(0.908) * double(scene.length(width)), 2e-3));
     LibraryDescription empty;
     CHECK(pixel_footprint(build_scene<AllBsdfs, AllLights>(scenes::on_small_film(empty))) > 0);
 }
@@ -115,7 +116,7 @@ TEST_CASE("photons: counts and statistics") {
     // The sphere is closed, so that every path leaves one photon where it first meets it.
     CHECK(of(statistics, "photons") == 4 * 256);
     CHECK(of(statistics, "photon_map_bytes") > 4 * 256 * 12);
-    CHECK(of(statistics, "radius_pixels") == doctest::Approx(2 * std::pow(8.0, -1.0 / 6)).epsilon(1e-4));
+    CHECK(of(statistics, "radius_pixels") == relative(2 * std::pow(8.0, -1.0 / 6), 1e-4));
 
     const Vcm vcm{.max_depth = 3};
     Session<FullScene, Vcm> merging(scene, vcm);
@@ -124,5 +125,5 @@ TEST_CASE("photons: counts and statistics") {
     CHECK(merging.statistics().counts.splats > 2 * 32);
     CHECK(of(merging.statistics(), "light_vertices") > 256);
     CHECK(of(merging.statistics(), "light_vertices") <= 2 * 256);
-    CHECK(of(merging.statistics(), "radius_pixels") == doctest::Approx(std::pow(2.0, -1.0 / 6)).epsilon(1e-4));
+    CHECK(of(merging.statistics(), "radius_pixels") == relative(std::pow(2.0, -1.0 / 6), 1e-4));
 }

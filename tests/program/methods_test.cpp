@@ -1,8 +1,8 @@
 // Every method through the program: its image, its numbers, and the options that only some methods have.
-// All seeds are fixed, so nothing here fails by chance. Tolerances are relative: without scale(0) they would be of 1
-// plus the value.
+// All seeds are fixed, so nothing here fails by chance.
 
 #include "program/process.hpp"
+#include "support/relative.hpp"
 
 #include <lightswitch/film/image_io.hpp>
 #include <lightswitch/render/any_method.hpp>
@@ -67,7 +67,7 @@ TEST_CASE("every method renders, and its numbers are sound") {
         CHECK(stats["max_depth"] == (method.kind == lightswitch::Kind::heuristic ? Json() : Json(-1)));
         CHECK(result.image == render(method.name, {"--threads", "1"}).image);
         if (method.kind == lightswitch::Kind::heuristic) CHECK(stats["splats"] == 0);
-        else CHECK(result.mean == doctest::Approx(truth).epsilon(0.25).scale(0));
+        else CHECK(result.mean == relative(truth, 0.25));
     });
 }
 
@@ -86,16 +86,16 @@ TEST_CASE("methods tell in --stats what they have done") {
     }
     CHECK(photon["photons"] > pixels);
     CHECK(photon["photon_map_bytes"] > photon["photons"]);
-    CHECK(photon["radius_pixels"] == doctest::Approx(radius_after(2, 2 / 3.0)).epsilon(1e-5).scale(0));
+    CHECK(photon["radius_pixels"] == relative(radius_after(2, 2 / 3.0), 1e-5));
     CHECK(photon["initial_radius_pixels"] == 2);
     CHECK(vcm["light_vertices"] > pixels);
-    CHECK(vcm["radius_pixels"] == doctest::Approx(radius_after(1, 2 / 3.0)).epsilon(1e-5).scale(0));
+    CHECK(vcm["radius_pixels"] == relative(radius_after(1, 2 / 3.0), 1e-5));
     CHECK(mlt["chains"] == pixels / 16);
     CHECK(mlt["max_chains"] == 1024);
     CHECK(mlt["mutations"] == pixels * samples);
     CHECK(mlt["acceptance_rate"] > 0.1);
     CHECK(mlt["acceptance_rate"] < 1);
-    CHECK(mlt["large_step_rate"] == doctest::Approx(0.3).epsilon(0.2).scale(0));
+    CHECK(mlt["large_step_rate"] == relative(0.3, 0.2));
     CHECK(mlt["large_steps"] == 0.3);
     CHECK(mlt["normalization"] > 0);
     CHECK(mlt["rr_depth"].is_null());
@@ -133,7 +133,7 @@ TEST_CASE("options of single methods: each arrives, and changes the image") {
 
 TEST_CASE("options of single methods do what they say") {
     CHECK(render("photon", {"--radius", "3", "--alpha", "0.5"}).stats["radius_pixels"] ==
-          doctest::Approx(radius_after(3, 0.5)).epsilon(1e-5).scale(0));
+          relative(radius_after(3, 0.5), 1e-5));
     CHECK(render("vcm", {"--radius", "0"}).stats["radius_pixels"] == 0);
     CHECK(render("photon", {"--photon-paths", "2.5"}).stats["paths"] == pixels * samples * 5 / 2);
     CHECK(render("photon").stats["shadow_rays"] == 0);
@@ -156,7 +156,7 @@ TEST_CASE("the depth of paths is that of the command line, for every method that
             CAPTURE(method);
             CHECK(ended.status == 0);
             CHECK(lightswitch::load_image(workspace / "x.pfm").mean().x ==
-                  doctest::Approx(value).epsilon(0.05).scale(0));
+                  relative(value, 0.05));
         }
 }
 

@@ -1,5 +1,6 @@
 // What the program writes when all is well.
 
+#include "../support/relative.hpp"
 #include "program/process.hpp"
 
 #include <lightswitch/film/image_io.hpp>
@@ -56,8 +57,8 @@ TEST_CASE("one render goes to several files and formats") {
     const lightswitch::Image image = lightswitch::load_image(workspace / "a.pfm");
     CHECK(image.width() == 16);
     CHECK(image.height() == 12);
-    CHECK(image.mean().x == doctest::Approx(2).epsilon(0.5));  // 1 / (1 - 0.5), but for noise
-    CHECK(lightswitch::load_image(workspace / "b.hdr").mean().x == doctest::Approx(image.mean().x).epsilon(0.02));
+    CHECK(image.mean().x == relative(2, 0.5));  // 1 / (1 - 0.5), but for noise
+    CHECK(lightswitch::load_image(workspace / "b.hdr").mean().x == relative(image.mean().x, 0.02));
     CHECK(read_text(workspace / "c.PNG").starts_with("\x89PNG"));
     if (lightswitch::detail::has_exr) {
         const lightswitch::Image exr = lightswitch::load_image(workspace / "d.exr");
@@ -92,7 +93,7 @@ TEST_CASE("the depth of paths is that of the command line") {
     for (const auto& [depth, value] : {std::pair{"1", 1.0}, {"2", 1.5}, {"3", 1.75}}) {
         const Ended ended = run(workspace, furnace({"-m", "path", "--max-depth", depth, "-o", "x.pfm"}));
         CHECK(ended.status == 0);
-        CHECK(lightswitch::load_image(workspace / "x.pfm").mean().x == doctest::Approx(value).epsilon(1e-5));
+        CHECK(lightswitch::load_image(workspace / "x.pfm").mean().x == relative(value, 1e-5));
     }
 }
 
@@ -156,7 +157,7 @@ TEST_CASE("--stats: every key, and alone on standard output") {
     CHECK(number(ended.out, "rays") >= 16 * 12 * 4);
     CHECK(number(ended.out, "rays") > number(ended.out, "shadow_rays"));
     CHECK(number(ended.out, "samples_per_second") ==
-          doctest::Approx(16 * 12 * 4 / number(ended.out, "seconds")).epsilon(1e-6));
+          relative(16 * 12 * 4 / number(ended.out, "seconds"), 1e-6));
     CHECK(run(workspace, furnace({"-m", "phong", "--stats", "-"})).prints("\"max_depth\": null"));
 }
 
@@ -276,7 +277,7 @@ TEST_CASE("a signal ends a render, and what is done is kept") {
             if (ended.status == -1) continue;
             CHECK(ended.says("lightswitch: cancelled: the image holds "));
             CHECK(workspace.files() == std::set<std::string>{"s.json", "x.pfm"});
-            CHECK(lightswitch::load_image(workspace / "x.pfm").mean().x == doctest::Approx(2).epsilon(0.5));
+            CHECK(lightswitch::load_image(workspace / "x.pfm").mean().x == relative(2, 0.5));
             const std::string json = read_text(workspace / "s.json");
             CHECK(json.find("\"cancelled\": true") != std::string::npos);
             CHECK(number(json, "samples_per_pixel") >= 1);

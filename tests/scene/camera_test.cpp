@@ -1,12 +1,14 @@
 #include <lightswitch/scene/camera.hpp>
 
 #include "../support/chi_square.hpp"
+#include "../support/relative.hpp"
 
 #include <doctest/doctest.h>
 
 #include <limits>
 
 using namespace lightswitch;
+using test::relative;
 using test::Random;
 
 namespace {
@@ -370,7 +372,7 @@ TEST_CASE("camera: rays are those of Mitsuba") {
         CAPTURE(&pin - pins);
         CHECK(glm::length(ray.direction - pin.direction) < 1e-5);
         CHECK(glm::length(ray.origin - pin.origin) < 1e-5);
-        CHECK(ray.length == doctest::Approx(pin.length).epsilon(1e-5));
+        CHECK(ray.length == relative(pin.length, 1e-5));
     }
 }
 
@@ -412,15 +414,15 @@ TEST_CASE("camera: near and far clip along the optical axis, also of a camera th
         for (const Vec2& pixel : {Vec2(5, 5), Vec2(0, 0), Vec2(10, 3)}) {
             const Segment ray = place.ray(camera, film(10, 10), pixel);
             CAPTURE(distance);
-            CHECK(ray.origin.z == doctest::Approx(0.5).epsilon(2e-6));
-            CHECK((ray.origin + ray.length * ray.direction).z == doctest::Approx(-0.25).epsilon(4e-6));
+            CHECK(ray.origin.z == relative(0.5, 2e-6));
+            CHECK((ray.origin + ray.length * ray.direction).z == relative(-0.25, 4e-6));
         }
         // A lens changes the direction, not the planes.
         camera.aperture_radius = 0.1 * distance;
         camera.focus_distance = distance;
         const Segment ray = place.ray(camera, film(10, 10), {2, 3}, {0.9f, 0.2f});
-        CHECK(ray.origin.z == doctest::Approx(0.5).epsilon(1e-5));
-        CHECK((ray.origin + ray.length * ray.direction).z == doctest::Approx(-0.25).epsilon(2e-5));
+        CHECK(ray.origin.z == relative(0.5, 1e-5));
+        CHECK((ray.origin + ray.length * ray.direction).z == relative(-0.25, 2e-5));
     }
     // Nothing is left to see beyond the far plane.
     CameraDescription camera;

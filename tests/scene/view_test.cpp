@@ -3,10 +3,12 @@
 #include <lightswitch/scene/camera.hpp>
 
 #include "../support/chi_square.hpp"
+#include "../support/relative.hpp"
 
 #include <doctest/doctest.h>
 
 using namespace lightswitch;
+using test::relative;
 using test::Random;
 
 namespace {
@@ -99,8 +101,8 @@ TEST_CASE("view: finds the pixel that a ray came from") {
             REQUIRE(view);
             CHECK(std::abs(double(view->pixel.x) - double(at.x)) < tolerance);
             CHECK(std::abs(double(view->pixel.y) - double(at.y)) < tolerance);
-            CHECK(double(dot(view->wi, ray.direction)) == doctest::Approx(-1).epsilon(1e-6));
-            CHECK(view->density == doctest::Approx(built.camera.density(Vec3(position), ray.direction)).epsilon(1e-4));
+            CHECK(double(dot(view->wi, ray.direction)) == relative(-1, 1e-6));
+            CHECK(view->density == relative(built.camera.density(Vec3(position), ray.direction), 1e-4));
             // The visibility ray goes towards the lens and ends at the near plane, on the lens when there is none.
             const Ray& visibility = view->visibility;
             CHECK(glm::length(DVec3(visibility.origin) - position) < 1e-6);
@@ -108,7 +110,7 @@ TEST_CASE("view: finds the pixel that a ray came from") {
             const DVec3 end = DVec3(visibility.origin) + double(visibility.far) * DVec3(visibility.direction);
             const double scale = glm::length(end - position);
             CHECK(glm::dot(end - eye, forward) ==
-                  doctest::Approx(built.space.length(s.camera.near_clip)).scale(scale).epsilon(1e-5));
+                  relative(built.space.length(s.camera.near_clip), 1e-5).or_absolute(1e-5 * scale));
         }
     }
 }
@@ -141,7 +143,7 @@ TEST_CASE("view: the density is how fast the pixel moves") {
             };
             const DVec2 x = moved(across.tangent), y = moved(across.bitangent);
             CHECK(built.camera.density(Vec3(position), ray.direction) ==
-                  doctest::Approx(std::abs(x.x * y.y - x.y * y.x)).epsilon(5e-3));
+                  relative(std::abs(x.x * y.y - x.y * y.x), 5e-3));
         }
     }
 }

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# rules.sh RULE DIRECTORY: checks one rule on all headers in DIRECTORY (include/lightswitch), and lists what breaks it.
+# rules.sh RULE DIRECTORY: checks one rule on all headers in DIRECTORY (include/lightswitch; for no_approx all of tests), and lists what
+# breaks it.
 set -u
 rule=${1:?usage: rules.sh RULE DIRECTORY}
 cd "${2:?usage: rules.sh RULE DIRECTORY}" || exit 2
@@ -29,6 +30,7 @@ case $rule in
   arithmetic) grep -rL --include='*.hpp' '^#include <lightswitch/' . | grep -vx './core/floating_point.hpp' |
     nothing 'no way leads to core/floating_point.hpp from:' ;;
   unit_float) grep -rnE '(static_cast<float>|float) *\([^()]*next(_2d)?\(\)' . | nothing 'would round up to 1, use next_float():' ;;
+  no_approx) grep -rnE --include='*.[ch]pp' '\<Approx\>' . | nothing 'takes 1 for small, use test::relative (tests/support/relative.hpp):' ;;
   pragma_once) grep -rL --include='*.hpp' '^#pragma once$' . | nothing 'no #pragma once in:' ;;
   length) find . -name '*.hpp' -exec awk 'END { if (FNR > 320) print FILENAME ": " FNR " lines" }' {} \; |
     nothing 'headers longer than 320 lines:' ;;

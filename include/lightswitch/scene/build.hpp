@@ -27,13 +27,6 @@ struct BuildOptions {
 
 namespace detail {
 
-/// What the element after `count` others of its type is known by; throws when there is no number left.
-inline TypedIndex checked_index(std::size_t kind, std::size_t count, const Origin& origin, const std::string& what) {
-    if (count > TypedIndex::max_position)
-        fail(origin, "the scene has more than " + std::to_string(TypedIndex::max_position + 1) + " " + what + " of one kind");
-    return {kind, count};
-}
-
 template <class BsdfList, class LightList>
 class SceneAssembly;
 

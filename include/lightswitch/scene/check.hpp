@@ -3,6 +3,7 @@
 // What can be wrong with a scene description, said in words.
 
 #include <lightswitch/bsdf/bsdf.hpp>
+#include <lightswitch/core/dispatch.hpp>
 #include <lightswitch/film/image.hpp>
 #include <lightswitch/scene/description.hpp>
 
@@ -110,6 +111,13 @@ void check(const SceneDescription<Material>& scene) {
         if (has_environment) fail(source.origin, "the scene has a second environment: give one with the sum of their radiances");
         has_environment = true;
     }
+}
+
+/// What the element after `count` others of its type is known by; throws when there is no number left.
+inline TypedIndex checked_index(std::size_t kind, std::size_t count, const Origin& origin, const std::string& what) {
+    if (count > TypedIndex::max_position)
+        fail(origin, "the scene has more than " + std::to_string(TypedIndex::max_position + 1) + " " + what + " of one kind");
+    return {kind, count};
 }
 
 /// Corners of the box around all shapes; both at the camera when there are none.
