@@ -1,5 +1,6 @@
 // Reports of comparisons and of verdicts: what their curves join, and what they say of the reference's own noise.
 
+#include "support/relative.hpp"
 #include "support/errors.hpp"
 
 #include <lightswitch/compare/verdict_report.hpp>
@@ -67,7 +68,7 @@ TEST_CASE("comparison: a rendered image says how long it took") {
     const DiffuseScene scene = small_box();
     Session session(scene, PathTracerNee{});
     session.run({.samples = 2});
-    CHECK(metadata_number(session.image(), "seconds") == doctest::Approx(session.statistics().seconds).epsilon(1e-3));
+    CHECK(metadata_number(session.image(), "seconds") == lightswitch::test::relative(session.statistics().seconds, 1e-3).or_absolute(1e-6));
     CHECK(metadata_number(session.image(), "samples") == 2);
     CHECK(metadata_number(session.image(), "method") == 0);
 }
@@ -85,11 +86,11 @@ TEST_CASE("comparison: the level at which curves end is the noise of the referen
     };
     const Image exact = noisy(0, 1, 1), rough = noisy(1, 256, 99);
     const double noise = std::sqrt(relmse(rough, exact));
-    CHECK(noise == doctest::Approx(1.0 / 16).epsilon(0.03));
+    CHECK(noise == lightswitch::test::relative(1.0 / 16, 0.03));
 
     const auto level = detail::level_of(curve_against(1, rough));
     REQUIRE(level);
-    CHECK(*level == doctest::Approx(noise).epsilon(0.05));
+    CHECK(*level == lightswitch::test::relative(noise, 0.05));
     CHECK(!detail::level_of(curve_against(1, exact)));
     CHECK(!detail::level_of(curve_against(8, rough)));  // its own noise hides it
     // A biased method ends higher: the lower of the two is nearer to the reference's noise.
@@ -120,7 +121,7 @@ TEST_CASE("comparison: an image by the reference's method with another seed tell
     for (const auto& images : {std::vector{truth, other}, std::vector{truth, few, other}, std::vector{truth, other, few}}) {
         const auto noise = noise_of(images);
         REQUIRE(noise);
-        CHECK(*noise == doctest::Approx(1.0 / 16).epsilon(0.03));
+        CHECK(*noise == lightswitch::test::relative(1.0 / 16, 0.03));
     }
     for (const char* key : {"seed", "method", "sampling"}) {
         ComparedImage changed = other;
