@@ -88,11 +88,11 @@ inline void answer(Subject& s, const VerifyOptions& options) {
     } else if (s.one_sided.any()) {
         v.reason = "No difference was found in what both can make, and more cannot be said: ";
         const auto lack = [&](const std::string& who, const PathClasses& classes) {
-            if (classes.any()) v.reason += who + " cannot make " + describe(classes) + "; ";
+            if (classes.any()) v.reason += (v.reason.ends_with(": ") ? "" : "; ") + who + " cannot make " + describe(classes);
         };
         lack(v.method, s.one_sided.ours_lack);
         lack(v.reference, s.one_sided.theirs_lack);
-        v.reason += "name a reference that makes the same paths, or that can leave them out (bdpt).";
+        v.reason += s.reference->estimator().can_leave_out.any() ? "." : ". A reference that can leave them out is bdpt.";
     } else {
         v.reason = s.needed_tolerance < 1 ? format("A bias of %.3g %% cannot be ruled out: ", 100 * s.needed_tolerance)
                                           : std::string("Nothing can be said yet of a bias below 100 %: ");
