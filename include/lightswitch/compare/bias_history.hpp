@@ -2,6 +2,8 @@
 
 // What the bias of a consistent method may be, by what it was when it had fewer samples.
 
+#include <lightswitch/core/floating_point.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -2,6 +2,8 @@
 
 // Kinds of light paths that some methods cannot make: what a comparison of two methods must know.
 
+#include <lightswitch/core/floating_point.hpp>
+
 #include <string>
 
 namespace lightswitch {
