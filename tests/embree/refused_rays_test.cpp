@@ -116,6 +116,7 @@ TEST_CASE("embree: rays at the edge of what it takes are traced, and none is cou
     REQUIRE(hit);
     CHECK(hit->distance > 0);
     CHECK(hits({.origin = {0.1f, 0.2f, 0}, .direction = {0, 0, 1}, .near = -infinity, .far = infinity}));
+    CHECK_FALSE(hits({.origin = {0.1f, 0.2f, 0}, .direction = {0, 0, 1}, .near = -5, .far = -1}));
     CHECK(embree::ray_count.refused == before.refused);
 }
 

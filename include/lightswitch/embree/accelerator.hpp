@@ -146,11 +146,10 @@ public:
     /// Closest hit between `ray.near` and `ray.far`; false when there is none.
     [[gnu::always_inline]] bool intersect(const Ray& ray, Hit& hit) const {
         RTCRayHit query;
-        ++ray_count.intersect;
-        if (!set(query.ray, ray)) [[unlikely]]
-            return false;
+        set(query.ray, ray);
         query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
         query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        ++ray_count.intersect;
         embree::intersect(scene_.get(), query);
         hit = {query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar,
                Vec3(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z)};
@@ -160,9 +159,8 @@ public:
     /// Whether anything lies between `ray.near` and `ray.far`.
     [[gnu::always_inline]] bool occluded(const Ray& ray) const {
         RTCRay query;
+        set(query, ray);
         ++ray_count.occluded;
-        if (!set(query, ray)) [[unlikely]]
-            return false;
         embree::occluded(scene_.get(), query);
         return query.tfar < 0 || missed(query);
     }
@@ -201,17 +199,11 @@ private:
     using Four [[gnu::vector_size(16)]] = float;
     using FourBits [[gnu::vector_size(16)]] = std::int32_t;
 
-    /// False, and counted where it is the ray's fault, when Embree is not to be asked.
-    ///
     /// Writes origin and direction as whole vectors: Embree reads them so, and a read of four separate writes would stall.
-    [[gnu::always_inline]] static bool set(RTCRay& query, const Ray& ray) {
-        const Four origin{ray.origin.x, ray.origin.y, ray.origin.z, std::max(ray.near, 0.0f)};
+    [[gnu::always_inline]] static void set(RTCRay& query, const Ray& ray) {
+        const float near = std::max(ray.near, 0.0f);
+        const Four origin{ray.origin.x, ray.origin.y, ray.origin.z, near};
         const Four direction{ray.direction.x, ray.direction.y, ray.direction.z, 0};
-        if (!is_within_limits(origin, direction)) [[unlikely]]
-            return refuse();
-        if (!(ray.far >= ray.near)) [[unlikely]]
-            // Between two numbers of which the second is smaller there is nothing to find, and nothing is wrong.
-            return ray.far < ray.near ? false : refuse();
         static_assert(offsetof(RTCRay, tnear) == 12 && offsetof(RTCRay, dir_x) == 16 && offsetof(RTCRay, time) == 28);
         std::memcpy(&query, &origin, sizeof origin);
         std::memcpy(&query.dir_x, &direction, sizeof direction);
@@ -219,12 +211,17 @@ private:
         query.mask = 0xffffffffu;
         query.id = 0;
         query.flags = 0;
-        return true;
+        if (!(is_within_limits(origin, direction) && ray.far >= near)) [[unlikely]]
+            disarm(query);
     }
 
-    static bool refuse() {
-        ++ray_count.refused;
-        return false;
+    /// Puts a ray that meets nothing in the place of one that Embree must not see, or that ends before it begins; only the former is
+    /// counted. A ray instead of an early return: a second way out would cost the inner loops more than the check.
+    [[gnu::noinline, gnu::cold]] static void disarm(RTCRay& query) {
+        const Four origin{query.org_x, query.org_y, query.org_z, 0}, direction{query.dir_x, query.dir_y, query.dir_z, 0};
+        ray_count.refused += !(is_within_limits(origin, direction) && query.tfar < query.tnear);
+        query.org_x = query.org_y = query.org_z = query.dir_x = query.dir_y = query.tfar = 0;
+        query.dir_z = query.tnear = 1;
     }
 
     /// False. Whether a ray has a direction at all is asked here, after Embree, where it costs those that hit something nothing.
