@@ -57,11 +57,7 @@ SceneSummary summarize(const LibraryDescription& scene) {
         if (std::holds_alternative<PointSource>(placed.source)) ++summary.point_lights;
         if (std::holds_alternative<DirectionalSource>(placed.source)) ++summary.directional_lights;
     }
-    for (const auto& material : scene.materials) {
-        ++summary.materials[std::visit(MaterialName{}, material.bsdf)];
-        summary.specular |=
-            std::visit([](const auto& bsdf) { return std::remove_cvref_t<decltype(bsdf)>::specular; }, material.bsdf);
-    }
+    for (const auto& material : scene.materials) ++summary.materials[std::visit(MaterialName{}, material.bsdf)];
     return summary;
 }
 

@@ -17,7 +17,6 @@ struct SceneSummary {
     std::size_t meshes = 0, luminous_meshes = 0, luminous_spheres = 0;
     std::size_t environments = 0, point_lights = 0, directional_lights = 0;
     std::map<std::string, std::size_t> materials;  ///< by kind
-    bool specular = false;                         ///< some material is a mirror or clear glass
     std::vector<std::filesystem::path> files;      ///< that were read
 };
 

@@ -85,13 +85,13 @@ inline void answer(Subject& s, const VerifyOptions& options) {
         v.answer = Answer::agrees;
         v.reason = format("A bias of more than %.3g %% is ruled out, with a confidence of %.6g %%.",
                           100 * std::max(s.needed_tolerance, 1e-5), 100 * v.confidence);
-    } else if (s.one_sided.any()) {
+    } else if (v.method_lacks.any() || v.reference_lacks.any()) {
         v.reason = "No difference was found in what both can make, and more cannot be said: ";
         const auto lack = [&](const std::string& who, const PathClasses& classes) {
             if (classes.any()) v.reason += (v.reason.ends_with(": ") ? "" : "; ") + who + " cannot make " + describe(classes);
         };
-        lack(v.method, s.one_sided.ours_lack);
-        lack(v.reference, s.one_sided.theirs_lack);
+        lack(v.method, v.method_lacks);
+        lack(v.reference, v.reference_lacks);
         v.reason += s.reference->estimator().can_leave_out.any() ? "." : ". A reference that can leave them out is bdpt.";
     } else {
         v.reason = s.needed_tolerance < 1 ? format("A bias of %.3g %% cannot be ruled out: ", 100 * s.needed_tolerance)
@@ -106,8 +106,7 @@ inline void answer(Subject& s, const VerifyOptions& options) {
             const Verdict::Part& whole = v.parts.front();
             v.reason += format(
                 " In columns %d to %d, rows %d to %d, its bias has not shrunk so far (%.4g instead of %.4g): an error "
-                "there, or "
-                "light or edges finer than its radius.",
+                "there, or light or edges finer than its radius.",
                 whole.worst.x0, whole.worst.x1 - 1, whole.worst.y0, whole.worst.y1 - 1, whole.ours, whole.theirs);
         }
     }

@@ -22,7 +22,6 @@ struct Subject {
 
     Replicas replicas;
     const Replicas* reference = nullptr;
-    OneSided one_sided;
     std::optional<BiasHistory> history;  // of a consistent method
     double begun_with = 1,
            images = first_look;  // of a consistent method: samples of its first look; images of this one

@@ -60,6 +60,9 @@ public:
         }
         if (subjects_.empty()) throw Error("there is no method to verify");
     }
+    /// Methods refer to their references in here.
+    Verification(const Verification&) = delete;
+    Verification& operator=(const Verification&) = delete;
 
     /// One verdict per method, in their order. Throws `Error` for images of different sizes, and what rendering throws.
     std::vector<Verdict> run() {
@@ -90,10 +93,9 @@ private:
         const PathClasses ours = method.missing - reference.missing, theirs = reference.missing - method.missing;
         const PathClasses by_reference = ours & reference.can_leave_out, by_us = theirs & method.can_leave_out;
         s.replicas.leave_out(by_us);
-        s.one_sided = {ours - by_reference, theirs - by_us};
         s.verdict.left_out = by_reference | by_us;
-        s.verdict.method_lacks = s.one_sided.ours_lack;
-        s.verdict.reference_lacks = s.one_sided.theirs_lack;
+        s.verdict.method_lacks = ours - by_reference;
+        s.verdict.reference_lacks = theirs - by_us;
         for (const detail::Replicas& r : references_)
             if (r.left_out() == by_reference) s.reference = &r;
         if (s.reference) return;
@@ -114,7 +116,8 @@ private:
         const bool only = detail::is_fixed(s.replicas) || detail::is_fixed(reference);
         if (only && !last && !schedule.worth_the_only_look(s.replicas, reference)) return;
         const double alpha = 1 - options_.confidence, level = only ? alpha : alpha / (look * (look + 1.0));
-        const detail::TestOfParts test(s.replicas, reference, 0.95 * level, s.one_sided,
+        const detail::OneSided one_sided{v.method_lacks, v.reference_lacks};
+        const detail::TestOfParts test(s.replicas, reference, 0.95 * level, one_sided,
                                        s.history ? &*s.history : nullptr);
 
         v.parts = test.parts;
@@ -123,7 +126,7 @@ private:
         v.images = s.replicas.count();
         v.samples = s.replicas.samples_drawn();
         v.image = image;
-        s.needed_tolerance = s.one_sided.any() ? std::numeric_limits<double>::infinity() : test.needed_tolerance;
+        s.needed_tolerance = one_sided.any() ? std::numeric_limits<double>::infinity() : test.needed_tolerance;
         s.rare = test.needed_tolerance > 1.5 * test.plain_tolerance;
         s.stuck = test.stuck_somewhere;
         s.alarms.resize(v.parts.size(), false);

@@ -147,7 +147,7 @@ private:
             case PlyType::float64: break;
         }
         const double value = std::bit_cast<double>(bits);
-        if (!has_finite_bits(value)) error("a number is not finite");
+        if (!is_finite(value)) error("a number is not finite");
         return value;
     }
 

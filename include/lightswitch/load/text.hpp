@@ -2,11 +2,10 @@
 
 // What every loader needs: numbers, words, line numbers, and quotes of text that may be hostile.
 
-#include <lightswitch/core/floating_point.hpp>
+#include <lightswitch/core/math.hpp>
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <charconv>
 #include <cstdint>
 #include <optional>
@@ -16,12 +15,6 @@
 #include <vector>
 
 namespace lightswitch::detail {
-
-/// True when `value` is neither infinite nor NaN; reads the bits, so that it also works under -ffast-math.
-inline bool has_finite_bits(double value) {
-    constexpr std::uint64_t exponent = 0x7ff0000000000000u;
-    return (std::bit_cast<std::uint64_t>(value) & exponent) != exponent;
-}
 
 /// The finite number that `word` spells, from its first to its last character, or nothing. Decimal or scientific
 /// notation whatever the locale; a leading plus is allowed.
@@ -64,7 +57,7 @@ inline std::optional<double> parse_number(std::string_view word) {
     double value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error != std::errc() || end != word.data() + word.size()) return {};
-    if (!has_finite_bits(value)) return {};
+    if (!is_finite(value)) return {};
     return value;
 }
 

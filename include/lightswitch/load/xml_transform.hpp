@@ -124,7 +124,7 @@ inline DMat4 read_transform(const XmlFile& file, pugi::xml_node node) {
     for (const pugi::xml_node child : node.children())
         if (child.type() == pugi::node_element) result = read_transform_step(file, child) * result;
     const double determinant = linear_determinant(result);
-    if (determinant == 0 || !has_finite_bits(determinant))
+    if (determinant == 0 || !is_finite(determinant))
         fail(file.origin(node), "the transform cannot be inverted: it has a scale of 0, or overflows");
     return result;
 }
