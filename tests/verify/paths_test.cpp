@@ -92,6 +92,7 @@ TEST_CASE("a method is compared in what both can make, and the report says what 
     std::ostringstream text;
     text << verdict;
     CHECK(text.str().find("only one of them makes it: caustics of point and directional lights") != std::string::npos);
+    CHECK(verdict.reason.find("Outside the comparison") != std::string::npos);
     // It can be either side that leaves them out.
     const Verdict turned = verify(scene, Bdpt{}, PathTracerNee{}, options);
     CHECK_MESSAGE(turned.agrees(), turned);

@@ -136,6 +136,8 @@ inline Verdict conclude(Subject& s, const VerifyOptions& options) {
     for (std::size_t i = 0; i < s.snapshots.size(); ++i)
         v.curve[i].error = std::sqrt(relmse(s.snapshots[i], v.reference_image));
     answer(s, options);
+    if (v.left_out.any())
+        v.reason += " Outside the comparison, because only one of them makes it: " + describe(v.left_out) + ".";
     return v;
 }
 

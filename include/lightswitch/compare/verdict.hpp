@@ -50,7 +50,7 @@ struct Verdict {
 
     std::string method, reference;
     Answer answer = Answer::undecided;
-    std::string reason;          ///< one sentence
+    std::string reason;          ///< in a sentence or two, with what is outside the comparison
     int first_wrong_length = 0;  ///< 0 when it is not known
     bool correlated_pixels = false;
     PathClasses left_out;                       ///< paths that only one side makes, and which it left out for this comparison
@@ -124,7 +124,6 @@ inline std::string percent_interval(const Verdict::Part& part, int channel) {
 /// Several lines: the answer with its reason, then one line per part.
 inline std::ostream& operator<<(std::ostream& out, const Verdict& v) {
     out << v.method << " against " << v.reference << ": " << name(v.answer) << ". " << v.reason << '\n';
-    if (v.left_out.any()) out << "  outside the comparison, because only one of them makes it: " << describe(v.left_out) << '\n';
     for (const Verdict::Part& part : v.parts) {
         const int channel = detail::surest_channel(part);
         out << "  " << name(part) << ": " << (part.disagrees ? "disagrees" : "no difference found") << ", bias "
