@@ -47,6 +47,8 @@ struct Recorder {
     float spread(auto l, const auto& p, const auto& w, const auto& q) const { return scene.spread(l, p, w, q); }
     const auto& camera() const { return scene.camera(); }
     const auto& film() const { return scene.film(); }
+    const auto& name() const { return scene.name(); }
+    const auto& camera_id() const { return scene.camera_id(); }
 };
 
 template <class S>

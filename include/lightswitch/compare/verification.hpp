@@ -109,7 +109,7 @@ private:
         Verdict& v = s.verdict;
         const detail::Replicas& reference = *s.reference;
         if (!reference.usable() || !s.replicas.usable()) return;
-        if (s.history && double(s.replicas.count()) < s.images && !v.parts.empty())
+        if (s.history && double(s.replicas.count()) < s.images && s.replicas.count() <= v.images)
             return;  // the look before says more
         const Image image = s.replicas.image();
         refuse_unless_comparable(image, reference.image());
@@ -158,7 +158,8 @@ private:
     /// More images make noise less, more samples of each the bias of a consistent method.
     void prepare_next_look(Subject& s, const detail::TestOfParts& test, const detail::Schedule& schedule) {
         const bool noisy = options_.tolerance > 0 && test.observed_bias < 0.45 * test.needed_tolerance;
-        const double images_needed = noisy ? 0.5 * s.images : 2 * s.images;  // of the time of one of today's
+        // Of the time of one of today's. Against noise a few more are worth having, as many as there is time for.
+        const double images_needed = noisy ? 1 : 2 * s.images;
         if (schedule.over(images_needed * s.replicas.seconds_per_image())) {
             s.decided = true;  // as far as it can be: the next look would not be ready in time
         } else if (noisy) {
