@@ -12,8 +12,8 @@ namespace {
 namespace ls = lightswitch;
 
 void run(const auto& scene, const auto& method) {
-    ls::Session<std::remove_cvref_t<decltype(scene)>, std::remove_cvref_t<decltype(method)>, ls::SerialExecutor> session(
-        scene, method, {}, {});
+    ls::Session<std::remove_cvref_t<decltype(scene)>, std::remove_cvref_t<decltype(method)>, ls::SerialExecutor>
+        session(scene, method, {}, {});
     session.run({.samples = 4});
 }
 
@@ -31,9 +31,14 @@ int main() {
     const ls::AnyMethod any_method = ls::method_by_name("path-nee");
     const auto direct = [&] { run(diffuse, ls::PathTracerNee{}); };
 
-    report("variants / concrete types", bench::compare(31, [&] {
-               std::visit([](const auto& scene, const auto& method) { run(scene, method); }, any_scene, any_method);
-           }, direct));
+    report("variants / concrete types",
+           bench::compare(
+               31,
+               [&] {
+                   std::visit([](const auto& scene, const auto& method) { run(scene, method); }, any_scene, any_method);
+               },
+               direct));
     report("concrete types / concrete types (noise)", bench::compare(31, direct, direct));
-    report("full scene type / diffuse scene type", bench::compare(31, [&] { run(full, ls::PathTracerNee{}); }, direct));
+    report("full scene type / diffuse scene type", bench::compare(
+                                                       31, [&] { run(full, ls::PathTracerNee{}); }, direct));
 }

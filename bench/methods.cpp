@@ -31,24 +31,28 @@ constexpr char help[] =
   --seconds S            for each method on each scene (5)
   --size N               width and height of the images in pixels (128)
   --reference-seconds R  for the reference of each scene (60)
-  --cache DIR            keep the references there, and take those of an earlier run; delete them when scenes have changed
+  --cache DIR            keep the references there, and take those of an earlier run; delete them when scenes have
+                         changed
   --output DIR           write methods-at-equal-time.png there: the images, one row for each scene
   SCENE                  a stock scene, point-light-box, or a Mitsuba 3 file that ends in .xml;
                          by default cornell-box, cornell-spheres, ajar-door and point-light-box
 
-One thread; seconds are its processor time. The methods of a scene advance in turn, each time until all have had twice as much.
+One thread; seconds are its processor time. The methods of a scene advance in turn, each time until all have had twice
+as much.
 
-Reference: half of its time goes to bdpt, half to path-nee, each with 8 images of other seeds. The halves are joined with weights in
-inverse proportion to their variances over the whole image. Whether they agree is printed: the ratio of their means, and the
-largest difference among 4 x 4 tiles, in standard deviations. Up to 3 is chance; above 4 the halves disagree, or one of them
-rests on a few rare bright paths.
+Reference: half of its time goes to bdpt, half to path-nee, each with 8 images of other seeds. The halves are joined
+with weights in inverse proportion to their variances over the whole image. Whether they agree is printed: the ratio of
+their means, and the largest difference among 4 x 4 tiles, in standard deviations. Up to 3 is chance; above 4 the halves
+disagree, or one of them rests on a few rare bright paths.
 
-relMSE:  mean over pixels and channels of (x - r)^2 / (r^2 + 0.01), nothing trimmed, less the part that the reference's own noise
-         makes, which the spread of its 16 images tells. Below a tenth of that part only a bound is printed (<).
+relMSE:  mean over pixels and channels of (x - r)^2 / (r^2 + 0.01), nothing trimmed, less the part that the reference's
+         own noise makes, which the spread of its 16 images tells. Below a tenth of that part only a bound is printed
+         (<).
 tiles:   the median of the relMSE of 8 x 8 tiles, which single bright pixels do not move.
 mean:    of the image, over that of the reference: below 1 where there is light that the method cannot find.
-time:    after which the relMSE stays below that of path-nee at the end, as a fraction of path-nee's time; looked at each
-         time it has doubled, and interpolated between the logarithms. < if it was below from the first look on, - if never.
+time:    after which the relMSE stays below that of path-nee at the end, as a fraction of path-nee's time; looked at
+         each time it has doubled, and interpolated between the logarithms. < if it was below from the first look on,
+         - if never.
 )";
 
 using Baseline = ls::PathTracerNee;
@@ -68,7 +72,8 @@ void advance(auto& session, double& spent, double seconds) {
             bench::seconds_of([&] { session.run({.samples = static_cast<int>(session.film().iterations()) + 1}); });
 }
 
-// ---- scenes ------------------------------------------------------------------------------------------------------------------
+// ---- scenes
+// ------------------------------------------------------------------------------------------------------------------
 
 /// The Cornell box lit by a point under its lamp.
 ls::LibraryDescription describe_point_light_box() {
@@ -93,7 +98,8 @@ ls::FullScene build(const std::string& name, int size) {
     return ls::build_scene<ls::AllBsdfs, ls::AllLights>(*scene);
 }
 
-// ---- the reference -----------------------------------------------------------------------------------------------------------
+// ---- the reference
+// -----------------------------------------------------------------------------------------------------------
 
 /// Independent images of one method, one below the other.
 template <class Method>
@@ -206,7 +212,8 @@ void print_agreement(const Half& a, const Half& b, const Reference& reference) {
         worst > 4 ? "  <- above 4: ask `lightswitch verify`" : "");
 }
 
-// ---- the methods -------------------------------------------------------------------------------------------------------------
+// ---- the methods
+// -------------------------------------------------------------------------------------------------------------
 
 double error_of(const ls::Image& image, const Reference& reference) {
     return ls::relmse(image, reference.image) - reference.relmse;
@@ -328,7 +335,8 @@ std::vector<ls::Tile> compare_methods(const ls::FullScene& scene, const Options&
     return row;
 }
 
-// ---- the command line --------------------------------------------------------------------------------------------------------
+// ---- the command line
+// --------------------------------------------------------------------------------------------------------
 
 double number(const std::string& option, const std::string& text, double low, double high) {
     char* end = nullptr;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Timing two pieces of work against each other: in turn, by the processor time of this thread, with the ratio taken pair by pair.
-// A machine that slows down or is busy with other work then changes both alike.
+// Timing two pieces of work against each other: in turn, by the processor time of this thread, with the ratio taken
+// pair by pair. A machine that slows down or is busy with other work then changes both alike.
 
 #include <algorithm>
 #include <cstdio>

@@ -1,4 +1,5 @@
-// Rays per second of path-nee and bdpt over a bare replay of the same rays through Embree: what the library adds to its ray tracer.
+// Rays per second of path-nee and bdpt over a bare replay of the same rays through Embree: what the library adds to its
+// ray tracer.
 //
 //   ray_rate [SCENE.xml ...]     without arguments: the stock Cornell box
 //
@@ -83,8 +84,7 @@ void measure(const S& scene, int pairs) {
     }
     std::uint64_t hits = 0;
     const auto result = bench::compare(
-        pairs,
-        [&] { replay(scene, recorder.rays, hits); },
+        pairs, [&] { replay(scene, recorder.rays, hits); },
         [&] {
             ls::Session<S, M, ls::SerialExecutor> session(scene, method, settings, {});
             session.run({.samples = 4});

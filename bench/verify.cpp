@@ -1,16 +1,19 @@
 // What `verify` finds, how soon, and how often it is wrong.
 //
-//   verify bugs [SECONDS]     every planted bug: seconds until it is found, and whether the path length is right (120 s at most each)
+//   verify bugs [SECONDS]     every planted bug: seconds until it is found, and whether the path length is right (120 s
+//   at most each)
 //   verify alarms [RUNS]      right methods against right ones with different seeds: how often they are said to differ
-//   verify agree [SECONDS] [SCENE...]   unbiased methods on the stock scenes or on scene files: whether a bias of 2 % is ruled out
+//   verify agree [SECONDS] [SCENE...]   unbiased methods on the stock scenes or on scene files: whether a bias of 2 %
+//   is ruled out
 //
-// Without arguments: bugs, 1000 runs for alarms, agree. Seconds are those of all processors together with whatever else they do.
+// Without arguments: bugs, 1000 runs for alarms, agree. Seconds are those of all processors together with whatever else
+// they do.
 
 #include "verify/planted/catalogue.hpp"
 #include "verify_lamps.hpp"
 
-#include <lightswitch/compare/verify.hpp>
 #include <lightswitch/lightswitch.hpp>
+#include <lightswitch/verify/verify.hpp>
 #if __has_include(<pugixml.hpp>)
 #include <lightswitch/load/mitsuba.hpp>
 #endif
@@ -64,14 +67,17 @@ int alarms(int runs) {
         const std::size_t i = static_cast<std::size_t>(run) % pairs.size();
         ls::VerifyOptions options{
             .seconds = 0, .tolerance = 0, .seed = 1 + static_cast<std::uint64_t>(run), .images = 54, .samples = 1};
-        if (sides[i].first.kind == ls::Kind::consistent) {  // accused only of what stays over many doublings of the samples
+        if (sides[i].first.kind ==
+            ls::Kind::consistent) {  // accused only of what stays over many doublings of the samples
             options.images = 16 << 5;
             options.path_lengths = 3;
         }
         const ls::Verdict v = ls::verify(sides[i].first, sides[i].second, options);
         ++made[i];
         alarms[i] += v.disagrees();
-        if (v.disagrees()) std::cout << pairs[i].name << ", " << pairs[i].scene << ", seed " << options.seed << ": " << v << std::flush;
+        if (v.disagrees())
+            std::cout << pairs[i].name << ", " << pairs[i].scene << ", seed " << options.seed << ": " << v
+                      << std::flush;
         if (run / static_cast<int>(pairs.size()) % 4 != 0) continue;
         options.confidence = 0.9;  // a rate that so many runs can show
         ++lax_made[i];

@@ -4,8 +4,8 @@
 
 namespace lightswitch::test {
 
-/// Every method that samples lights against `bdpt`, on scenes made to break the comparison: spots and lamps smaller than
-/// anything that an image resolves, caustics, mirrors. All are right.
+/// Every method that samples lights against `bdpt`, on scenes made to break the comparison: spots and lamps smaller
+/// than anything that an image resolves, caustics, mirrors. All are right.
 std::vector<CorrectPair> lamp_pairs();
 
 }  // namespace lightswitch::test

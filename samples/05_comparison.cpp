@@ -1,8 +1,8 @@
 // Every method on one scene, and what sets each apart from the path tracer: 05_comparison [DIRECTORY]
 //
 // Writes to DIRECTORY (by default the current one), for each scene, SCENE-METHOD.png and .exr, a picture of each
-// difference, and SCENE-comparison.png: the methods side by side, and beneath each its difference, which heuristic methods do
-// not have. All methods get the same number of samples per pixel.
+// difference, and SCENE-comparison.png: the methods side by side, and beneath each its difference, which heuristic
+// methods do not have. All methods get the same number of samples per pixel.
 
 #include <lightswitch/compare/difference.hpp>
 #include <lightswitch/compare/false_color.hpp>
@@ -54,7 +54,8 @@ ls::FalseColorOptions colors(std::string caption) {
     return {.scale = largest_difference, .caption = std::move(caption)};
 }
 
-/// The methods and the reference, `columns` in a row, and the differences below; where there is none stands, once, the colour bar.
+/// The methods and the reference, `columns` in a row, and the differences below; where there is none stands, once, the
+/// colour bar.
 ls::Image sheet(const std::vector<Entry>& entries, const Entry& reference) {
     constexpr int letter_size = 2;
     std::vector<ls::Tile> tiles;

@@ -1,7 +1,8 @@
-// Is my method right? Direct light, written by hand, against the path tracer that stops there; once as it should be, and once with
-// the cosine forgotten.
+// Is my method right? Direct light, written by hand, against the path tracer that stops there; once as it should be,
+// and once with the cosine forgotten.
 
 #include <lightswitch/lightswitch.hpp>
+#include <lightswitch/verify/verify.hpp>
 
 #include <iostream>
 

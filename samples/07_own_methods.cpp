@@ -3,8 +3,8 @@
 //
 // Both show light that is seen directly or after one reflection, as the library's methods do up to path length 2.
 
-#include <lightswitch/compare/comparison_report.hpp>
 #include <lightswitch/lightswitch.hpp>
+#include <lightswitch/report/comparison_report.hpp>
 
 #include <cstdio>
 #include <cstdlib>
@@ -13,8 +13,9 @@
 
 namespace ls = lightswitch;
 
-/// Resampled importance sampling (Talbot, Cline and Egbert 2005): of several places on the lights one is chosen in proportion to the
-/// light that would arrive from it if nothing were in between; a single shadow ray shows whether something is.
+/// Resampled importance sampling (Talbot, Cline and Egbert 2005): of several places on the lights one is chosen in
+/// proportion to the light that would arrive from it if nothing were in between; a single shadow ray shows whether
+/// something is.
 struct Resampled {
     static constexpr std::string_view name = "resampled";
     static constexpr ls::Kind kind = ls::Kind::unbiased;
@@ -49,7 +50,8 @@ struct Resampled {
     }
 };
 
-/// Directions by the surface alone, `rays` of them: light where they happen to meet any. An image method, for the example's sake.
+/// Directions by the surface alone, `rays` of them: light where they happen to meet any. An image method, for the
+/// example's sake.
 struct ByChance {
     static constexpr std::string_view name = "by-chance";
     static constexpr ls::Kind kind = ls::Kind::unbiased;

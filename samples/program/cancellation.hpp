@@ -7,10 +7,11 @@
 
 namespace lightswitch::program {
 
-/// While it lives, the first SIGINT, SIGTERM or SIGHUP requests a stop through `token()`; after that SIGINT and SIGTERM have
-/// their default effect again, so a second one ends the program at once. Not so SIGHUP: a terminal that is closed, or a
-/// service that is stopped, may send it after another. A signal that the parent process has chosen to ignore (nohup, a
-/// shell's background job) stays ignored. One object at a time. Throws `Error` where no thread can be started.
+/// While it lives, the first SIGINT, SIGTERM or SIGHUP requests a stop through `token()`; after that SIGINT and SIGTERM
+/// have their default effect again, so a second one ends the program at once. Not so SIGHUP: a terminal that is closed,
+/// or a service that is stopped, may send it after another. A signal that the parent process has chosen to ignore
+/// (nohup, a shell's background job) stays ignored. One object at a time. Throws `Error` where no thread can be
+/// started.
 class Cancellation {
 public:
     Cancellation();

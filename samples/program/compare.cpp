@@ -1,11 +1,11 @@
 #include "outputs.hpp"
 #include "program.hpp"
 
-#include <lightswitch/compare/comparison_report.hpp>
 #include <lightswitch/compare/difference.hpp>
 #include <lightswitch/compare/false_color.hpp>
 #include <lightswitch/compare/metrics.hpp>
 #include <lightswitch/film/image_io.hpp>
+#include <lightswitch/report/comparison_report.hpp>
 
 #include <fmt/format.h>
 

@@ -36,9 +36,10 @@ public:
         if (command == "render") return usage("render SCENE --output FILE [OPTIONS]");
         if (command == "compare") return usage("compare A B ... [OPTIONS]");
         if (command == "verify")
-            return usage("verify SCENE [OPTIONS]\n"
-                         "       lightswitch verify SCENE --images FILES [OPTIONS]\n"
-                         "       lightswitch verify --images FILES --against FILES [OPTIONS]");
+            return usage(
+                "verify SCENE [OPTIONS]\n"
+                "       lightswitch verify SCENE --images FILES [OPTIONS]\n"
+                "       lightswitch verify --images FILES --against FILES [OPTIONS]");
         if (command == "strategies") return usage("strategies SCENE --output FILE [OPTIONS]");
         if (command == "info") return usage("info SCENE [OPTIONS]");
         if (command == "methods") return usage("methods");
@@ -49,8 +50,8 @@ private:
     static std::string usage(const char* arguments) { return fmt::format("Usage: lightswitch {}\n", arguments); }
 };
 
-/// The command line, last word first as CLI11 wants it. It looks for options even behind a "--" in places, so words there
-/// that begin with "-" are written as the file names that they are.
+/// The command line, last word first as CLI11 wants it. It looks for options even behind a "--" in places, so words
+/// there that begin with "-" are written as the file names that they are.
 std::vector<std::string> reversed_words(int argc, char** argv) {
     std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
     const auto end = std::find(words.begin(), words.end(), "--");
@@ -172,7 +173,8 @@ void occupy_standard_streams() {
             _exit(user_error);
 }
 
-/// What no thread has caught: oneTBB throws so out of its own threads when it cannot start one more. An error like others.
+/// What no thread has caught: oneTBB throws so out of its own threads when it cannot start one more. An error like
+/// others.
 [[noreturn]] void end_by_uncaught() {
     static std::atomic_flag told;
     if (told.test_and_set()) std::this_thread::sleep_for(std::chrono::seconds(1));  // another thread ends the program

@@ -2,7 +2,7 @@
 
 // What the program tells about methods beyond what they say themselves.
 
-#include <lightswitch/render/any_method.hpp>
+#include <lightswitch/method/any_method.hpp>
 
 #include <array>
 #include <string_view>
@@ -27,7 +27,8 @@ inline constexpr std::array method_notes{
     MethodNotes{LightTracer::name, "light from the lamps' side: sharp caustics, point lights, lamps seen directly", ""},
     MethodNotes{Bdpt::name, "all light transport, paths from both sides joined in every way: hidden lamps, caustics",
                 "be quick: a sample costs several times one of path-nee"},
-    MethodNotes{PhotonMapping::name, "caustics, also in mirrors, and smooth indirect light, blurred within a shrinking radius",
+    MethodNotes{PhotonMapping::name,
+                "caustics, also in mirrors, and smooth indirect light, blurred within a shrinking radius",
                 "be sharp at once: its error falls slowly; glossy surfaces are noisy"},
     MethodNotes{Vcm::name, "all light transport: bdpt that also merges nearby paths, so caustics in mirrors, too",
                 "be exact at once where it merges; takes memory for all light paths of an iteration"},

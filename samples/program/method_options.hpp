@@ -4,7 +4,7 @@
 
 #include "program.hpp"
 
-#include <lightswitch/render/any_method.hpp>
+#include <lightswitch/method/any_method.hpp>
 
 #include <span>
 #include <string_view>

@@ -178,9 +178,10 @@ void add_verify(CLI::App& app, VerifyCommand& command) {
               "what to verify, separated by commas (default: all that have an\nexpected image, but the reference)")
         ->delimiter(',')
         ->allow_extra_args(false);
-    add_name(app, "-r,--reference", "NAME", command.reference,
-             "what to verify them against, which must be unbiased (default:\npath-nee; path where that is in question; bdpt "
-             "where the others\nlack paths, or path-nee does)");
+    add_name(
+        app, "-r,--reference", "NAME", command.reference,
+        "what to verify them against, which must be unbiased (default:\npath-nee; path where that is in question; bdpt "
+        "where the others\nlack paths, or path-nee does)");
     add_names("--images", "FILES", command.images,
               "instead of methods: independent renders (different seeds) of the\nscene by any renderer, such as "
               "'mine/*.exr'");

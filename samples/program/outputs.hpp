@@ -2,8 +2,8 @@
 
 // The files that a command writes.
 
-#include <lightswitch/compare/report.hpp>
 #include <lightswitch/film/image_io.hpp>
+#include <lightswitch/report/report.hpp>
 
 #include <filesystem>
 #include <string>
@@ -16,8 +16,8 @@ namespace lightswitch::program {
 /// Everything that can be known to be unwritable, found out before the work begins.
 class Outputs {
 public:
-    // Each throws `Error`, which begins with the option, unless the file can be written and is no other output. An empty
-    // name is no file.
+    // Each throws `Error`, which begins with the option, unless the file can be written and is no other output. An
+    // empty name is no file.
     void add_image(std::string_view option, const std::filesystem::path& file);
     void add_file(std::string_view option, const std::filesystem::path& file);
     /// "-" is standard output.

@@ -2,10 +2,10 @@
 
 // The sub-commands of the program `lightswitch`, and what the command line says to them.
 
-#include <lightswitch/compare/verify.hpp>
 #include <lightswitch/film/filter.hpp>
 #include <lightswitch/render/render.hpp>
 #include <lightswitch/scene/build.hpp>
+#include <lightswitch/verify/verify.hpp>
 
 #include <filesystem>
 #include <map>
@@ -72,7 +72,7 @@ struct VerifyCommand {
     SceneOptions scene;  ///< may be empty where `against` is given
     std::vector<std::string> methods;
     std::string reference;
-    MethodOptions of_methods;  ///< each for those that have it
+    MethodOptions of_methods;                  ///< each for those that have it
     std::vector<std::string> images, against;  ///< patterns of file names
     std::optional<int> max_depth;
     VerifyOptions options{.seconds = 60};

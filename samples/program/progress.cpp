@@ -40,8 +40,9 @@ void ProgressLine::update(const Progress& progress, std::uint64_t rays) {
     if (!shown_ || progress.seconds < next_) return;
     const double rate = progress.seconds > 0 ? double(rays) / progress.seconds : 0;
     const std::string left = progress.fraction > 0 ? ", " + duration(progress.seconds_left) + " left" : std::string();
-    update(progress.seconds, fmt::format("{:3.0f} %  {} samples per pixel  {}{}  {:.2f} Mrays/s", 100 * progress.fraction,
-                                         progress.iterations, duration(progress.seconds), left, rate * 1e-6));
+    update(progress.seconds,
+           fmt::format("{:3.0f} %  {} samples per pixel  {}{}  {:.2f} Mrays/s", 100 * progress.fraction,
+                       progress.iterations, duration(progress.seconds), left, rate * 1e-6));
 }
 
 void ProgressLine::clear() {

@@ -27,13 +27,17 @@ Outputs checked_outputs(const RenderOptions& options) {
 
 void warn_about_depths(const AnyMethod& method, const RenderOptions& options) {
     const auto [has_depth, has_roulette] = std::visit(
-        [](const auto& m) { return std::pair(requires { m.max_depth; }, requires { m.rr_depth; }); }, method);
+        [](const auto& m) {
+            return std::pair(
+                requires { m.max_depth; }, requires { m.rr_depth; });
+        },
+        method);
     if (!has_depth && (options.max_depth || options.rr_depth))
         print_warning(fmt::format("the method {} has no path length: --max-depth and --rr-depth change nothing",
                                   method_name(method)));
     else if (!has_roulette && options.rr_depth)
-        print_warning(fmt::format("the method {} has no Russian roulette: --rr-depth changes nothing",
-                                  method_name(method)));
+        print_warning(
+            fmt::format("the method {} has no Russian roulette: --rr-depth changes nothing", method_name(method)));
 }
 
 Budget budget(const RenderOptions& options, const SceneSummary& summary) {

@@ -1,12 +1,12 @@
 #pragma once
 
-// One render by one method. Each method has a translation unit of its own, run_*.cpp, so that they build in parallel and the rest of
-// the program never sees the loop.
+// One render by one method. Each method has a translation unit of its own, run_*.cpp, so that they build in parallel
+// and the rest of the program never sees the loop.
 
-#include <lightswitch/compare/estimator.hpp>
-#include <lightswitch/render/any_method.hpp>
+#include <lightswitch/method/any_method.hpp>
 #include <lightswitch/render/render.hpp>
 #include <lightswitch/scene/any_scene.hpp>
+#include <lightswitch/verify/estimator.hpp>
 
 #include <functional>
 

@@ -8,7 +8,8 @@
 
 namespace lightswitch::program {
 
-/// "; did you mean "path"?" for the nearest of `known`, which are in small letters, or an empty string when none is near.
+/// "; did you mean "path"?" for the nearest of `known`, which are in small letters, or an empty string when none is
+/// near.
 std::string suggestion(std::string_view given, std::span<const std::string_view> known);
 
 /// "a, b, c".

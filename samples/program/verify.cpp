@@ -8,10 +8,10 @@
 #include "run.hpp"
 #include "text.hpp"
 
-#include <lightswitch/compare/verdict_report.hpp>
-#include <lightswitch/compare/verify.hpp>
 #include <lightswitch/film/image_io.hpp>
+#include <lightswitch/report/verdict_report.hpp>
 #include <lightswitch/scene/stock.hpp>
+#include <lightswitch/verify/verify.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -62,8 +62,8 @@ std::vector<Image> load_replicas(const std::vector<std::string>& patterns, std::
         images.push_back(load_image(file));
         const Image& image = images.back();
         if (const auto at = image.first_not_finite())
-            throw Error(fmt::format("{}: pixel ({}, {}) is not finite: nothing can be said of its mean", file, at->first,
-                                    at->second));
+            throw Error(fmt::format("{}: pixel ({}, {}) is not finite: nothing can be said of its mean", file,
+                                    at->first, at->second));
         for (std::size_t i = 0; i + 1 < images.size(); ++i) {
             try {
                 refuse_unless_comparable(images[i], image);
@@ -96,22 +96,24 @@ PathClasses possible(const AnyScene& scene) {
     return std::visit([](const auto& s) { return possible_paths(s); }, scene);
 }
 
-/// The simplest reference that misses nothing, or that can leave out what the methods miss. Of files nothing is known: most
-/// renderers' path tracers sample lights.
+/// The simplest reference that misses nothing, or that can leave out what the methods miss. Of files nothing is known:
+/// most renderers' path tracers sample lights.
 std::string chosen_reference(const VerifyCommand& command, const PathClasses& possible) {
     if (!command.reference.empty()) return command.reference;
     if (!command.images.empty() && possible.dirac_light) return std::string(PathTracerNee::name);
-    const bool some_cannot = std::any_of(command.methods.begin(), command.methods.end(), [&](const std::string& method) {
-        return ((cannot_make(method) - Bdpt::cannot_make) & possible).any();
-    });
+    const bool some_cannot = std::any_of(
+        command.methods.begin(), command.methods.end(),
+        [&](const std::string& method) { return ((cannot_make(method) - Bdpt::cannot_make) & possible).any(); });
     if (possible.dirac_caustic || some_cannot) return std::string(Bdpt::name);
     // Sampling lights makes far less noise than meeting them by chance; where it is itself in question, chance judges.
-    const bool in_question = std::find(command.methods.begin(), command.methods.end(), PathTracerNee::name) != command.methods.end();
+    const bool in_question =
+        std::find(command.methods.begin(), command.methods.end(), PathTracerNee::name) != command.methods.end();
     return std::string(in_question && !possible.dirac_light ? PathTracer::name : PathTracerNee::name);
 }
 
 /// The methods that are asked for, or all that make what the reference makes or can leave out, and more than nothing.
-std::vector<std::string> chosen_methods(const VerifyCommand& command, const PathClasses& possible, const std::string& reference) {
+std::vector<std::string> chosen_methods(const VerifyCommand& command, const PathClasses& possible,
+                                        const std::string& reference) {
     if (!command.methods.empty()) return command.methods;
     const PathClasses can_leave_out = reference == Bdpt::name ? Bdpt::can_leave_out : PathClasses{};
     std::vector<std::string> names;
@@ -180,8 +182,7 @@ Contest make_contest(const VerifyCommand& command, const std::stop_token& stop) 
     std::vector<AnyMethod> methods;
     const auto add = [&](const std::string& wanted, std::string_view option) {
         const bool file = wanted.find('.') != std::string::npos;
-        methods.push_back(
-            find_method(wanted, option, file ? "; files are named with --images and --against" : ""));
+        methods.push_back(find_method(wanted, option, file ? "; files are named with --images and --against" : ""));
         set_path_length(methods.back(), length);
     };
     add(reference, "--reference");
@@ -226,9 +227,7 @@ Json part_json(const Verdict::Part& part) {
               {"reference", part.theirs}}}};
 }
 
-Json classes_json(const PathClasses& classes) {
-    return classes.any() ? Json(describe(classes)) : Json();
-}
+Json classes_json(const PathClasses& classes) { return classes.any() ? Json(describe(classes)) : Json(); }
 
 Json verdict_json(const Verdict& v) {
     Json parts = Json::array(), tiles = Json::array();

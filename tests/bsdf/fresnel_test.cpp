@@ -52,8 +52,8 @@ TEST_CASE("fresnel: dielectric limits") {
         const auto in = fresnel_dielectric(0.95f, eta);
         if (in.cos_t != 0) {
             const auto out = fresnel_dielectric(in.cos_t, eta);
-            // The cosine that is handed over is rounded, which counts the more the less the two media differ: the reflectance is about
-            // the square of that difference.
+            // The cosine that is handed over is rounded, which counts the more the less the two media differ: the
+            // reflectance is about the square of that difference.
             CHECK(out.reflectance == relative(in.reflectance, 1e-4 + 4 * double(unit_roundoff / std::abs(eta - 1))));
             CHECK(out.cos_t == relative(0.95f, 1e-5));
         }

@@ -5,8 +5,8 @@
 #include "bsdf_checks.hpp"
 
 using namespace lightswitch;
-using test::relative;
 using test::direction;
+using test::relative;
 
 static_assert(Bsdf<RoughConductor> && Bsdf<TwoSided<RoughConductor>>);
 

@@ -6,9 +6,9 @@
 #include "bsdf_checks.hpp"
 
 using namespace lightswitch;
-using test::relative;
 using test::direction;
 using test::mirrored;
+using test::relative;
 
 static_assert(Bsdf<Conductor> && Bsdf<TwoSided<Conductor>> && Bsdf<Dielectric>);
 static_assert(Conductor::specular && TwoSided<Conductor>::specular && Dielectric::specular);

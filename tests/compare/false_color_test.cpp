@@ -80,8 +80,14 @@ TEST_CASE("false colour: the scale is a percentile of the finite magnitudes") {
 }
 
 TEST_CASE("false colour: a scale that is chosen is round, and so are its half and quarters") {
-    for (const auto& [value, round] : std::vector<std::pair<float, float>>{
-             {1, 1}, {1.01f, 1.5f}, {0.0837f, 0.1f}, {0.0237f, 0.03f}, {700, 800}, {99, 100}, {5e-7f, 5e-7f}, {6.1e20f, 8e20f}})
+    for (const auto& [value, round] : std::vector<std::pair<float, float>>{{1, 1},
+                                                                           {1.01f, 1.5f},
+                                                                           {0.0837f, 0.1f},
+                                                                           {0.0237f, 0.03f},
+                                                                           {700, 800},
+                                                                           {99, 100},
+                                                                           {5e-7f, 5e-7f},
+                                                                           {6.1e20f, 8e20f}})
         CHECK(double(detail::round_up(value)) == lightswitch::test::relative(double(round), 1e-6));
     Image image(2, 1);
     image(0, 0) = Rgb(0.0837f);

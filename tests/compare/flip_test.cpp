@@ -12,8 +12,8 @@
 #include <vector>
 
 using namespace lightswitch;
-using test::relative;
 using lightswitch::test::message_of;
+using test::relative;
 
 namespace {
 
@@ -53,9 +53,12 @@ const Pair& spots() {
     const auto ground = [](int x, int y, int c) { return static_cast<float>(4 + x + 2 * y + 8 * c) / 256; };
     const auto in_disc = [](int x, int y, int centre) { return (x - centre) * (x - centre) + (y - 9) * (y - 9) <= 4; };
     static const Pair result = pair(
-        48, 32,
-        [=](int x, int y, int c) { return in_disc(x, y, 11) ? 60 : x == 40 && y == 5 ? 300 : ground(x, y, c); },
-        [=](int x, int y, int c) { return in_disc(x, y, 10) ? 60 : x == 30 && y == 20 ? 900 : ground(x, y, c); });
+        48, 32, [=](int x, int y, int c) { return in_disc(x, y, 11)   ? 60
+                                                  : x == 40 && y == 5 ? 300
+                                                                      : ground(x, y, c); },
+        [=](int x, int y, int c) { return in_disc(x, y, 10)    ? 60
+                                          : x == 30 && y == 20 ? 900
+                                                               : ground(x, y, c); });
     return result;
 }
 
@@ -97,25 +100,65 @@ struct Expected {
 
 // Printed by tests/data/flip/make_values.py.
 const std::array<Expected, 10> table{{
-    {tiles, false, 67.0206433, 0.26603847, {},
+    {tiles,
+     false,
+     67.0206433,
+     0.26603847,
+     {},
      {{0, 0, 0.000000}, {39, 71, 0.055694}, {19, 5, 0.100097}, {30, 20, 0.242910}, {20, 68, 0.592531}}},
-    {tiles, false, 30, 0.28293530, {},
+    {tiles,
+     false,
+     30,
+     0.28293530,
+     {},
      {{0, 0, 0.000000}, {39, 71, 0.000000}, {19, 5, 0.003749}, {30, 20, 0.268266}, {20, 68, 0.756989}}},
-    {tiles, true, 67.0206433, 0.23022277, {1.473802, 2.498335, 2},
+    {tiles,
+     true,
+     67.0206433,
+     0.23022277,
+     {1.473802, 2.498335, 2},
      {{0, 0, 0.000000}, {39, 71, 0.080055}, {19, 5, 0.070290}, {30, 20, 0.184516}, {20, 68, 0.450234}}},
-    {tiles, true, 30, 0.25400450, {1.473802, 2.498335, 2},
+    {tiles,
+     true,
+     30,
+     0.25400450,
+     {1.473802, 2.498335, 2},
      {{0, 0, 0.000000}, {39, 71, 0.000000}, {19, 5, 0.002508}, {30, 20, 0.210648}, {20, 68, 0.529841}}},
-    {spots, false, 67.0206433, 0.02031921, {},
+    {spots,
+     false,
+     67.0206433,
+     0.02031921,
+     {},
      {{0, 0, 0.000050}, {8, 9, 0.544396}, {13, 9, 0.529578}, {30, 20, 0.313250}, {40, 5, 0.363423}}},
-    {spots, true, 67.0206433, 0.04309183, {-8.730484, 3.041599, 12},
+    {spots,
+     true,
+     67.0206433,
+     0.04309183,
+     {-8.730484, 3.041599, 12},
      {{0, 0, 0.000079}, {8, 9, 0.653449}, {13, 9, 0.651756}, {30, 20, 0.858662}, {40, 5, 0.851534}}},
-    {noise, false, 67.0206433, 0.30257390, {},
+    {noise,
+     false,
+     67.0206433,
+     0.30257390,
+     {},
      {{0, 0, 0.448173}, {43, 35, 0.559177}, {19, 5, 0.104579}, {12, 30, 0.268180}, {22, 32, 0.154690}}},
-    {noise, false, 200, 0.32930266, {},
+    {noise,
+     false,
+     200,
+     0.32930266,
+     {},
      {{0, 0, 0.448269}, {43, 35, 0.464718}, {19, 5, 0.249568}, {12, 30, 0.326481}, {22, 32, 0.267936}}},
-    {noise, true, 67.0206433, 0.41052516, {-0.954301, -0.382568, 2},
+    {noise,
+     true,
+     67.0206433,
+     0.41052516,
+     {-0.954301, -0.382568, 2},
      {{0, 0, 0.388149}, {43, 35, 0.541586}, {19, 5, 0.329786}, {12, 30, 0.380154}, {22, 32, 0.336512}}},
-    {noise, true, 200, 0.38469177, {-0.954301, -0.382568, 2},
+    {noise,
+     true,
+     200,
+     0.38469177,
+     {-0.954301, -0.382568, 2},
      {{0, 0, 0.483678}, {43, 35, 0.476586}, {19, 5, 0.314503}, {12, 30, 0.353421}, {22, 32, 0.367255}}},
 }};
 
@@ -185,9 +228,8 @@ TEST_CASE("FLIP: is 0 for equal images, at most 1, grey, and symmetric when it i
 
 TEST_CASE("FLIP: the number of threads does not change the result") {
     const auto wavy = [](int factor) {
-        return make(30, 300, [factor](int x, int y, int c) {
-            return static_cast<float>((x * factor + y * 7 + c) % 64) / 32;
-        });
+        return make(30, 300,
+                    [factor](int x, int y, int c) { return static_cast<float>((x * factor + y * 7 + c) % 64) / 32; });
     };
     FlipOptions one, three;
     one.threads = 1;

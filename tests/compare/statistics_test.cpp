@@ -105,16 +105,14 @@ TEST_CASE("an interval holds what the test does not refuse") {
                 const Interval interval = welch_interval(a, Estimate::exact(0), p);
                 CHECK(interval.low < 3);
                 CHECK(interval.high > 3);
-                CHECK(std::log(welch_p(a, Estimate::exact(interval.low))) ==
-                      relative(std::log(p), 1e-3));
-                CHECK(std::log(welch_p(a, Estimate::exact(interval.high))) ==
-                      relative(std::log(p), 1e-3));
+                CHECK(std::log(welch_p(a, Estimate::exact(interval.low))) == relative(std::log(p), 1e-3));
+                CHECK(std::log(welch_p(a, Estimate::exact(interval.high))) == relative(std::log(p), 1e-3));
             }
 }
 
-// The sum of n values of which one in 200 is 1 and the others 0, against its expectation: with the correction, a p-value below 1e-4 may
-// come up 20 000 x 1e-4 = 2 times; more than 12 do with probability 1e-6. The plain test is wrong far more often, which shows
-// that there is something to correct.
+// The sum of n values of which one in 200 is 1 and the others 0, against its expectation: with the correction, a
+// p-value below 1e-4 may come up 20 000 x 1e-4 = 2 times; more than 12 do with probability 1e-6. The plain test is
+// wrong far more often, which shows that there is something to correct.
 TEST_CASE("false alarms of rare events") {
     std::mt19937 engine(1);
     std::binomial_distribution<int> image(50, 0.005);

@@ -14,8 +14,7 @@ TEST_CASE("pdf: changes of measure") {
     CHECK(to_solid_angle(uniform, 1e4f, 0.5f).value == relative(1e4 / 2, 1e-5));
     for (const float distance2 : {1e-6f, 0.3f, 7e5f})
         for (const float cosine : {1e-4f, 0.3f, 1.0f}) {
-            CHECK(to_area(to_solid_angle(uniform, distance2, cosine), distance2, cosine).value ==
-                  relative(0.25, 1e-6));
+            CHECK(to_area(to_solid_angle(uniform, distance2, cosine), distance2, cosine).value == relative(0.25, 1e-6));
         }
     CHECK(to_solid_angle(uniform, 1, 0).value == infinity);
     CHECK(to_area({infinity}, 1, 0.5f).value == infinity);

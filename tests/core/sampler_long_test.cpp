@@ -1,4 +1,5 @@
-// A thousand million draws of everything that makes numbers in [0, 1): one that is rounded to float reaches 1 every 2^25 draws.
+// A thousand million draws of everything that makes numbers in [0, 1): one that is rounded to float reaches 1 every
+// 2^25 draws.
 
 #include <lightswitch/core/sampler.hpp>
 #include <lightswitch/method/primary_space.hpp>

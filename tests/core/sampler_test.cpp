@@ -11,9 +11,9 @@
 #include <vector>
 
 using namespace lightswitch;
-using test::relative;
 using test::chi_square;
 using test::Mean;
+using test::relative;
 using test::UniformCorrelation;
 
 namespace {
@@ -52,8 +52,8 @@ private:
     std::vector<double> counts_;
 };
 
-/// Whether 2^k points are a (0,k,2)-net in base 2: each elementary interval of area 2^-k holds exactly one. Exact, since
-/// all numbers have 24 bits.
+/// Whether 2^k points are a (0,k,2)-net in base 2: each elementary interval of area 2^-k holds exactly one. Exact,
+/// since all numbers have 24 bits.
 bool is_net(const std::vector<Vec2>& net, int k) {
     for (int a = 0; a <= k; ++a) {
         std::vector<bool> taken(net.size());
@@ -165,8 +165,8 @@ TEST_CASE("sampler: over the pixels of one iteration every pair of dimensions is
 }
 
 TEST_CASE("sampler: over the iterations of one pixel dimensions of different pairs are uniform together") {
-    // Sobol' points are more even than independent ones, in each dimension alone: that can only lower chi-square. If two
-    // pairs had the same shuffling or scrambling, their points would lie on few lines.
+    // Sobol' points are more even than independent ones, in each dimension alone: that can only lower chi-square. If
+    // two pairs had the same shuffling or scrambling, their points would lie on few lines.
     constexpr std::size_t pairs = 12;
     std::vector<SquareTest> xx(pairs * pairs, SquareTest(12)), xy(pairs * pairs, SquareTest(12));
     for (std::uint64_t i = 0; i < 4096; ++i) {
@@ -268,8 +268,8 @@ TEST_CASE("sampler: numbers are a pure function of their arguments, in whatever 
 }
 
 TEST_CASE("sampler: seeds and iterations are not interchangeable") {
-    // Numbers of (seed, iteration) and (seed + a, iteration + b) are equal as rarely as by chance: 40000 pairs of 24 bits
-    // give 0.0024 on average, so that three are a false alarm of 2e-9.
+    // Numbers of (seed, iteration) and (seed + a, iteration + b) are equal as rarely as by chance: 40000 pairs of 24
+    // bits give 0.0024 on average, so that three are a false alarm of 2e-9.
     for (const Sampling sampling : both)
         for (const int a : {-1, 1})
             for (const int b : {-1, 0, 1}) {

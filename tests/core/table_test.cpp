@@ -136,8 +136,9 @@ TEST_CASE("discrete distribution: impossible weights are refused") {
 }
 
 TEST_CASE("discrete distribution: the cost does not grow with the number of weights") {
-    // Steps of the search cannot be counted from outside; time is compared with a linear search's, which would be thousands
-    // of times slower at this size. Weights that fall like 1 / i^2 crowd nearly all indices into the last buckets.
+    // Steps of the search cannot be counted from outside; time is compared with a linear search's, which would be
+    // thousands of times slower at this size. Weights that fall like 1 / i^2 crowd nearly all indices into the last
+    // buckets.
     std::vector<double> weights(100000);
     for (std::size_t i = 0; i < weights.size(); ++i) weights[i] = 1 / (1 + double(i) * double(i));
     const DiscreteDistribution table(weights);

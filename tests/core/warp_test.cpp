@@ -8,10 +8,10 @@
 #include <optional>
 
 using namespace lightswitch;
-using test::relative;
 using lightswitch::test::chi_square;
 using lightswitch::test::chi_square_sphere;
 using lightswitch::test::Random;
+using test::relative;
 
 namespace {
 
@@ -208,9 +208,7 @@ TEST_CASE("warp: chi-square against independent parametrisations and the stated 
 }
 
 TEST_CASE("warp: moments have their analytic values") {
-    const auto near = [](double value, double truth) {
-        CHECK(value == relative(truth, 2e-4).or_absolute(2e-4 * 0.1));
-    };
+    const auto near = [](double value, double truth) { CHECK(value == relative(truth, 2e-4).or_absolute(2e-4 * 0.1)); };
     near(mean([](const Vec2& u) { return square(concentric_disk(u).x); }), 0.25);
     near(mean([](const Vec2& u) { return square(square(concentric_disk(u).y)); }), 0.125);
     near(mean([](const Vec2& u) { return concentric_disk(u).x; }), 0);

@@ -11,8 +11,8 @@
 #include <vector>
 
 using namespace lightswitch;
-using test::relative;
 using test::Random;
+using test::relative;
 
 namespace {
 
@@ -48,8 +48,8 @@ Accelerator build(const Shapes& shapes, bool robust = false) {
     return accelerator;
 }
 
-/// What a ray hits, by double precision and patience. `margin` is how clearly: the relative distance by which the decision
-/// (inside the triangle, in front of the next one) could change before it would be another one.
+/// What a ray hits, by double precision and patience. `margin` is how clearly: the relative distance by which the
+/// decision (inside the triangle, in front of the next one) could change before it would be another one.
 struct Reference {
     bool hit = false;
     double distance = std::numeric_limits<double>::infinity();
@@ -270,11 +270,11 @@ TEST_CASE("embree: many devices and scenes at once, moved and used from several 
 
 TEST_CASE("embree: rays are counted per thread") {
     const Accelerator accelerator = build({});
-    const embree::RayCount before = embree::ray_count;
+    const RayCount before = ray_count;
     embree::Hit hit{};
     for (int i = 0; i < 5; ++i) accelerator.intersect(Ray{}, hit);
     for (int i = 0; i < 3; ++i) (void)accelerator.occluded(Ray{});
-    CHECK(embree::ray_count.intersect - before.intersect == 5);
-    CHECK(embree::ray_count.occluded - before.occluded == 3);
-    std::thread([&] { CHECK(embree::ray_count.intersect == 0); }).join();
+    CHECK(ray_count.intersect - before.intersect == 5);
+    CHECK(ray_count.occluded - before.occluded == 3);
+    std::thread([&] { CHECK(ray_count.intersect == 0); }).join();
 }

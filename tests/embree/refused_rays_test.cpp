@@ -83,20 +83,20 @@ TEST_CASE("embree: a ray that is not finite, too large or without a direction me
         std::size_t number = 0;
         for (const Ray& ray : bad_rays()) {
             CAPTURE(number++);
-            const embree::RayCount before = embree::ray_count;
+            const RayCount before = ray_count;
             CHECK_FALSE(scene.intersect(ray));
-            CHECK(embree::ray_count.refused - before.refused == 1);
+            CHECK(ray_count.refused - before.refused == 1);
             CHECK_FALSE(scene.occluded(ray));
-            CHECK(embree::ray_count.refused - before.refused == 2);
-            CHECK(embree::ray_count.intersect - before.intersect == 1);
-            CHECK(embree::ray_count.occluded - before.occluded == 1);
+            CHECK(ray_count.refused - before.refused == 2);
+            CHECK(ray_count.intersect - before.intersect == 1);
+            CHECK(ray_count.occluded - before.occluded == 1);
         }
     }
 }
 
 TEST_CASE("embree: rays at the edge of what it takes are traced, and none is counted") {
     const GreyScene scene = room();
-    const embree::RayCount before = embree::ray_count;
+    const RayCount before = ray_count;
     const auto hits = [&](const Ray& ray) {
         CHECK(bool(scene.intersect(ray)) == scene.occluded(ray));
         return scene.occluded(ray);
@@ -117,7 +117,7 @@ TEST_CASE("embree: rays at the edge of what it takes are traced, and none is cou
     CHECK(hit->distance > 0);
     CHECK(hits({.origin = {0.1f, 0.2f, 0}, .direction = {0, 0, 1}, .near = -infinity, .far = infinity}));
     CHECK_FALSE(hits({.origin = {0.1f, 0.2f, 0}, .direction = {0, 0, 1}, .near = -5, .far = -1}));
-    CHECK(embree::ray_count.refused == before.refused);
+    CHECK(ray_count.refused == before.refused);
 }
 
 TEST_CASE("render: rays that Embree must not see are counted with pixel and iteration") {
@@ -126,7 +126,8 @@ TEST_CASE("render: rays that Embree must not see are counted with pixel and iter
     const auto slope = [](const Ray& r) { return Vec2(r.direction.x, r.direction.y) / r.direction.z; };
     const Vec2 a = slope(scene.camera().ray({2, 1}, Vec2(0.5f))), b = slope(scene.camera().ray({3, 2}, Vec2(0.5f)));
     const auto chosen = [&](const Ray& ray) {
-        return glm::all(glm::greaterThan(slope(ray), glm::min(a, b))) && glm::all(glm::lessThan(slope(ray), glm::max(a, b)));
+        return glm::all(glm::greaterThan(slope(ray), glm::min(a, b))) &&
+               glm::all(glm::lessThan(slope(ray), glm::max(a, b)));
     };
     for (const Ray& ray : bad_rays()) {
         Session<GreyScene, Shooter> session(scene, Shooter{chosen, ray}, {.seed = 7});

@@ -15,14 +15,14 @@
 #include <vector>
 
 #if defined(__unix__) || defined(__APPLE__)
-#include <csignal>
 #include <sys/resource.h>
 #include <unistd.h>
+#include <csignal>
 #endif
 
 using namespace lightswitch;
-using test::relative;
 using lightswitch::test::message_of;
+using test::relative;
 namespace fs = std::filesystem;
 
 namespace {
@@ -178,8 +178,9 @@ TEST_CASE("pfm: bit-exact, bottom row first") {
     Image image(1, 2);
     image(0, 0) = Rgb(1);
     image(0, 1) = Rgb(2, -1, 0.5f);
-    CHECK(detail::encode_pfm(image) ==
-          bytes_of("50460a3120320a2d312e300a" "00000040000080bf0000003f" "0000803f0000803f0000803f"));
+    CHECK(detail::encode_pfm(image) == bytes_of("50460a3120320a2d312e300a"
+                                                "00000040000080bf0000003f"
+                                                "0000803f0000803f0000803f"));
 }
 
 TEST_CASE("pfm: big endian, grey, scaled") {
@@ -246,11 +247,17 @@ TEST_CASE("hdr: what was written reads back within RGBE precision, at every widt
 
 TEST_CASE("hdr: flat rows, repeated pixels and EXPOSURE") {
     const std::string header = "#?RGBE\nEXPOSURE=2\nEXPOSURE=0.25\nFORMAT=32-bit_rle_rgbe\n\n";
-    const Image flat = detail::decode_rgbe(header + "-Y 1 +X 2\n" + bytes_of("80402081" "40404081"), "x.hdr");
+    const Image flat = detail::decode_rgbe(header + "-Y 1 +X 2\n" +
+                                               bytes_of("80402081"
+                                                        "40404081"),
+                                           "x.hdr");
     CHECK(flat(0, 0) == Rgb(2, 1, 0.5f));
     CHECK(flat(1, 0) == Rgb(1));
     // 1 + 2 + 1 * 256 pixels of (128, 0, 0, 129)
-    const std::string runs = bytes_of("80000081" "01010102" "01010101");
+    const std::string runs = bytes_of(
+        "80000081"
+        "01010102"
+        "01010101");
     const Image old = detail::decode_rgbe(header + "-Y 1 +X 259\n" + runs, "x.hdr");
     CHECK(old(0, 0) == Rgb(2, 0, 0));
     CHECK(old(258, 0) == Rgb(2, 0, 0));
@@ -271,8 +278,14 @@ TEST_CASE("hdr: refuses what is malformed, without taking memory for it") {
     CHECK(contains(refusal(head + "-Y -5 +X 5\n"), "not possible"));
     CHECK(contains(refusal(head + "-Y 8192 +X 8192\n" + std::string(4000, '\1')), "ends too early"));
     CHECK(contains(refusal(head + "-Y 1 +X 8\n" + bytes_of("02020009")), "length is not the width"));
-    CHECK(contains(refusal(head + "-Y 1 +X 8\n" + bytes_of("02020008" "8901")), "damaged run"));
-    CHECK(contains(refusal(head + "-Y 1 +X 8\n" + bytes_of("02020008" "0001")), "damaged run"));
+    CHECK(contains(refusal(head + "-Y 1 +X 8\n" +
+                           bytes_of("02020008"
+                                    "8901")),
+                   "damaged run"));
+    CHECK(contains(refusal(head + "-Y 1 +X 8\n" +
+                           bytes_of("02020008"
+                                    "0001")),
+                   "damaged run"));
     CHECK(contains(refusal(head + "-Y 1 +X 8\n" + bytes_of("01010105")), "damaged run"));  // repeats no pixel
     const std::string whole = detail::encode_rgbe(test_image(20, 2, false));
     for (std::size_t n = 0; n < whole.size(); ++n) CHECK(refusal(whole.substr(0, n)) != "(no error)");
@@ -336,8 +349,11 @@ TEST_CASE("exr: refuses what is malformed or not an RGB image") {
     // 1 x 512 pixels declared to be 65536 x 512: every piece is there, but none can hold 12 MB.
     std::string wide = detail::encode_exr(Image(1, 512), "x.exr");
     for (int k = 0; k < 2; ++k)  // data window and display window
-        wide = replaced(wide, bytes_of("0000000000000000" "00000000ff010000"),
-                        bytes_of("0000000000000000" "ffff0000ff010000"));
+        wide = replaced(wide,
+                        bytes_of("0000000000000000"
+                                 "00000000ff010000"),
+                        bytes_of("0000000000000000"
+                                 "ffff0000ff010000"));
     CHECK(contains(refusal(wide), "a piece of the image has an impossible size"));
     for (const std::string& whole : {plain, piz})
         for (std::size_t n = 0; n < whole.size(); ++n) CHECK(refusal(whole.substr(0, n)) != "(no error)");

@@ -96,8 +96,7 @@ TEST_CASE("emission: paths start on a rectangle with the density that is stated"
         const double cosine = double(dot(at->normal, e.ray.direction));
         // Both triangles are as large, so that the density is even over the rectangle.
         CHECK(double(e.pdf.value) == relative(cosine / (pi_d * area), 1e-4));
-        CHECK(double(scene.emission_pdf(*at, e.ray.direction).value) ==
-              relative(double(e.pdf.value), 1e-4));
+        CHECK(double(scene.emission_pdf(*at, e.ray.direction).value) == relative(double(e.pdf.value), 1e-4));
         CHECK(double(e.cosine) == relative(cosine, 1e-4));
         CHECK(double(e.weight.y) == relative(2 * cosine / double(e.pdf.value), 1e-4));
         CHECK_FALSE(e.dirac);
@@ -129,8 +128,7 @@ TEST_CASE("emission: paths start on a sphere, outside or inside, with the densit
             at.position = e.ray.origin;
             at.normal = Vec3(normal);
             at.light = e.light;
-            CHECK(double(scene.emission_pdf(at, e.ray.direction).value) ==
-                  relative(double(e.pdf.value), 1e-3));
+            CHECK(double(scene.emission_pdf(at, e.ray.direction).value) == relative(double(e.pdf.value), 1e-3));
             const Vec3 local = Basis(Vec3(normal)).to_local(e.ray.direction);
             cube.add(0.5 + 0.5 * outward.z, turn_of(outward.x, outward.y), cosine * cosine, turn_of(local.x, local.y));
         }
@@ -175,8 +173,7 @@ TEST_CASE("emission: a point sends paths everywhere, a sun and a sky through all
                 CHECK(glm::length(d - glm::normalize(DVec3(0.3, -1, 0.2))) < 1e-6);
                 cube.add(r2, angle, std::fmod(16 * r2, 1.0), std::fmod(16 * angle, 1.0));
             } else {
-                CHECK(double(scene.environment_emission_pdf().value) ==
-                      relative(double(e.pdf.value), 1e-5));
+                CHECK(double(scene.environment_emission_pdf().value) == relative(double(e.pdf.value), 1e-5));
                 cube.add(z, around, r2, angle);
             }
         }
@@ -287,11 +284,8 @@ TEST_CASE("emission: the spread is the ratio of the densities of sampling and of
             // The same by the other road.
             const auto hit = scene.intersect(Ray{.origin = at.position, .direction = s.wi});
             if (hit && hit->light && !scene.infinite(hit->light) && dot(hit->normal, s.wi) < -0.05f)
-                CHECK(double(scene.spread(hit->light, at, s.wi, hit->position)) ==
-                      relative(double(s.spread), 2e-3));
-            if (!hit)
-                CHECK(double(scene.spread(light, at, s.wi, Vec3(0))) ==
-                      relative(double(s.spread), 1e-4));
+                CHECK(double(scene.spread(hit->light, at, s.wi, hit->position)) == relative(double(s.spread), 2e-3));
+            if (!hit) CHECK(double(scene.spread(light, at, s.wi, Vec3(0))) == relative(double(s.spread), 1e-4));
         }
         for (int i = 0; i < 1000000; ++i) {
             const LightEmission e = emit(scene, random);

@@ -13,8 +13,8 @@ using namespace lightswitch::test;
 
 namespace {
 
-// False alarms, were the seeds drawn at random (they are fixed): all chi-square tests of this file together 1e-6; a mean may
-// be off by 5 standard errors, 6e-7 each.
+// False alarms, were the seeds drawn at random (they are fixed): all chi-square tests of this file together 1e-6; a
+// mean may be off by 5 standard errors, 6e-7 each.
 constexpr int chi_square_tests = 40;
 const double level = sidak(1e-6, chi_square_tests);
 
@@ -86,8 +86,8 @@ Irradiance irradiance(const GreyScene& scene, const SurfacePoint& from, int samp
     return result;
 }
 
-/// Solid angle form factor of a rectangle a x b in a plane parallel to the receiver at distance c, with one corner straight
-/// above it (Siegel and Howell, configuration 11), times pi.
+/// Solid angle form factor of a rectangle a x b in a plane parallel to the receiver at distance c, with one corner
+/// straight above it (Siegel and Howell, configuration 11), times pi.
 double corner_factor(double a, double b, double c) {
     const double x = a / c, y = b / c, rx = std::sqrt(1 + x * x), ry = std::sqrt(1 + y * y);
     return 0.5 * (x / rx * std::atan(y / rx) + y / ry * std::atan(x / ry));
@@ -122,7 +122,8 @@ TEST_CASE("light sampling: a rectangle, from near, far, beside and behind") {
         const double in_front = 2 * 4 * corner_factor(half, half, distance);
         // The corners are rounded by up to 2^-25, each side of the rectangle by twice that.
         const double rounding = in_front * (1e-5 + 4 * 0x1p-25 / size);
-        CHECK(irradiance(scene, free_point(scene, straight, Vec3(-axis)), 100000, 13).mean.sigmas(in_front, rounding) < 5);
+        CHECK(irradiance(scene, free_point(scene, straight, Vec3(-axis)), 100000, 13).mean.sigmas(in_front, rounding) <
+              5);
         // In its plane, but for rounding, and behind it there is nothing.
         for (const double behind : {0.0, -1e-5, -0.3}) {
             const SurfacePoint there = free_point(scene, center + axis * behind, Vec3(-axis));
@@ -244,8 +245,7 @@ TEST_CASE("light sampling: point and directional lights") {
     for (const double distance : {1e-3, 0.5, 1.5}) {
         const DVec3 direction = glm::normalize(DVec3(0.1, 0.4, 0.9));
         const SurfacePoint from = free_point(scene, DVec3(0.2, 0.3, 0.7) - distance * direction, {0, 0, 1});
-        CHECK(irradiance(scene, from, 10, 61).mean.value() ==
-              relative(5 * direction.z / (distance * distance), 1e-3));
+        CHECK(irradiance(scene, from, 10, 61).mean.value() == relative(5 * direction.z / (distance * distance), 1e-3));
     }
     CHECK(irradiance(scene, free_point(scene, {0.2, 0.3, 0.8}), 10, 62).mean.value() == 0);
     // In the light itself there is no direction to it.

@@ -1,4 +1,5 @@
-// Lights are chosen half in proportion to the flux that they bring, and half evenly among what was described as one light.
+// Lights are chosen half in proportion to the flux that they bring, and half evenly among what was described as one
+// light.
 
 #include "../support/relative.hpp"
 #include "../support/scenes.hpp"
@@ -29,8 +30,8 @@ GreyDescription all_lights() {
     return scene;
 }
 
-/// Probabilities that follow from the luminous flux into the scene, in light numbers: by kind in the order of `AllLights`,
-/// then as described.
+/// Probabilities that follow from the luminous flux into the scene, in light numbers: by kind in the order of
+/// `AllLights`, then as described.
 std::vector<double> probabilities() {
     const double radius2 = 3 * 0.9999 * 0.9999;  // of the sphere around the box
     const std::vector<double> flux{luminance(DVec3(0.02, 0.03, 0.04)) * pi_d * pi_d * radius2,
@@ -93,8 +94,7 @@ TEST_CASE("light selection: the density of a hit contains the probability of its
     const Vec3 down(0, 0, -1), from(Vec3(scene.space().point({0.05, 0.02, 0.75})));
     const auto hit = scene.intersect(Ray{.origin = from, .direction = down});
     REQUIRE(hit);
-    CHECK(double(scene.light_pdf(from, down, *hit).value) ==
-          relative(expected[5] * 0.25 * 0.25 / 0.04, 1e-4));
+    CHECK(double(scene.light_pdf(from, down, *hit).value) == relative(expected[5] * 0.25 * 0.25 / 0.04, 1e-4));
     // The sphere, seen from distance 0.5 of its centre.
     const Vec3 at(Vec3(scene.space().point({-0.5, 0, 0.5})));
     const auto ball = scene.intersect(Ray{.origin = at, .direction = down});

@@ -1,5 +1,5 @@
-// The ray that a light sample asks to be free: it must end before the light, whatever the sizes and distances, and must still
-// see what is just in front of the light.
+// The ray that a light sample asks to be free: it must end before the light, whatever the sizes and distances, and must
+// still see what is just in front of the light.
 
 #include "../support/scenes.hpp"
 

@@ -1,5 +1,5 @@
-#include "support/relative.hpp"
 #include "load/files.hpp"
+#include "support/relative.hpp"
 
 #include <lightswitch/load/obj.hpp>
 #include <lightswitch/load/ply.hpp>

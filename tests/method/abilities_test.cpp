@@ -1,7 +1,7 @@
-// What the methods say that they cannot make (`PathClasses`): a scene for each class, and for what all can make; all methods in
-// each. And the tables of README and docs/methods.md say the same.
+// What the methods say that they cannot make (`PathClasses`): a scene for each class, and for what all can make; all
+// methods in each. And the tables of README and docs/methods.md say the same.
 
-#include <lightswitch/render/any_method.hpp>
+#include <lightswitch/method/any_method.hpp>
 #include <lightswitch/render/render.hpp>
 #include <lightswitch/scene/stock.hpp>
 
@@ -38,8 +38,10 @@ void look_at_floor(LibraryDescription& scene) {
     scene.camera.fov = 50;
 }
 
-/// The image's mean by every method that shows light, over that of `reference`. Fixed seeds: the same numbers on every run.
-std::map<std::string_view, double> shares(const LibraryDescription& description, std::string_view reference, int samples) {
+/// The image's mean by every method that shows light, over that of `reference`. Fixed seeds: the same numbers on every
+/// run.
+std::map<std::string_view, double> shares(const LibraryDescription& description, std::string_view reference,
+                                          int samples) {
     const FullScene scene = build_scene<AllBsdfs, AllLights>(description);
     std::map<std::string_view, double> means;
     for_each_method([&](auto method) {
@@ -57,8 +59,8 @@ std::map<std::string_view, double> shares(const LibraryDescription& description,
     return means;
 }
 
-/// Those that make the paths of `member` (what a scene shows; null: what all methods make) show it all, within `tolerance`; the
-/// others hardly any of it.
+/// Those that make the paths of `member` (what a scene shows; null: what all methods make) show it all, within
+/// `tolerance`; the others hardly any of it.
 void check_who_shows(const std::map<std::string_view, double>& shares, bool PathClasses::*member, double tolerance) {
     REQUIRE(shares.size() == 7);
     for_each_method([&]<class M>(const M&) {
@@ -67,8 +69,7 @@ void check_who_shows(const std::map<std::string_view, double>& shares, bool Path
         const double share = shares.at(M::name);
         if (member && cannot_make<M>().*member)
             CHECK(share < 0.3);  // what comes by other ways than the one that is asked for
-        else
-            CHECK(std::abs(share - 1) < tolerance);
+        else CHECK(std::abs(share - 1) < tolerance);
     });
 }
 
@@ -104,7 +105,8 @@ TEST_CASE("abilities: a diffuse surface under a sky") {
 TEST_CASE("abilities: a lamp's reflection in rough metal") {
     LibraryDescription scene;
     scene.add(quad({-3, 0, 3}, {3, 0, 3}, {3, 0, -3}, {-3, 0, -3}), scene.add(RoughConductor{.alpha = 0.15f}));
-    scene.add(quad({-0.5, 2, -0.5}, {0.5, 2, -0.5}, {0.5, 2, 0.5}, {-0.5, 2, 0.5}), scene.add(Lambert{Rgb(0)}), Rgb(10));
+    scene.add(quad({-0.5, 2, -0.5}, {0.5, 2, -0.5}, {0.5, 2, 0.5}, {-0.5, 2, 0.5}), scene.add(Lambert{Rgb(0)}),
+              Rgb(10));
     scene.camera.fov = 20;
     scene.film.width = scene.film.height = 16;
     look(scene, {1.5, 2, 0}, {0.75, 0, 0});
@@ -125,13 +127,15 @@ TEST_CASE("abilities: a diffuse surface seen in a mirror") {
 TEST_CASE("abilities: the table in the docs says what the methods say") {
     std::ifstream file(LIGHTSWITCH_TESTS_DIR "/../docs/methods.md");
     const std::string text{std::istreambuf_iterator<char>(file), {}};
-    REQUIRE(text.find("| method | caustic | caustic in a mirror | point light | sky | rough metal | seen in a mirror |") !=
-            std::string::npos);
+    REQUIRE(
+        text.find("| method | caustic | caustic in a mirror | point light | sky | rough metal | seen in a mirror |") !=
+        std::string::npos);
     for_each_method([&]<class M>(const M&) {
         if (M::kind == Kind::heuristic) return;
         const PathClasses no = cannot_make<M>();
         std::string row = "\n| `" + std::string(M::name) + "` |";
-        for (const bool cannot : {no.dirac_caustic, no.mirrored_dirac_caustic, no.dirac_light, false, false, no.mirrored})
+        for (const bool cannot :
+             {no.dirac_caustic, no.mirrored_dirac_caustic, no.dirac_light, false, false, no.mirrored})
             row += cannot ? " no |" : " yes |";
         CHECK_MESSAGE(text.find(row + "\n") != std::string::npos, row);
     });

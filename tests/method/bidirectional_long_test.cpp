@@ -2,7 +2,7 @@
 
 #include "bidirectional.hpp"
 
-#include <lightswitch/compare/verify.hpp>
+#include <lightswitch/verify/verify.hpp>
 
 using namespace lightswitch;
 using namespace lightswitch::test;

@@ -216,7 +216,6 @@ TEST_CASE("a highlight is where a mirror would show the light, and the picture i
                     .radiance(scene, scene.camera().ray({column, static_cast<float>(y) + 0.5f}, {}), sampler)
                     .y;
             };
-            CHECK(value(static_cast<float>(x) + 0.5f) ==
-                  relative(value(15.5f - static_cast<float>(x)), 1e-3));
+            CHECK(value(static_cast<float>(x) + 0.5f) == relative(value(15.5f - static_cast<float>(x)), 1e-3));
         }
 }

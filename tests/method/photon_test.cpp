@@ -84,8 +84,7 @@ TEST_CASE("photons: the radius shrinks by the law of Knaus and Zwicker, and star
     const MergeRadius radius{.pixels = 3, .alpha = 0.75f};
     CHECK(double(radius.at(0, 0.5)) == relative(1.5, 1e-5));
     for (const std::uint64_t n : {2u, 16u, 1000u})
-        CHECK(std::pow(double(radius.at(n - 1, 0.5)) / 1.5, 2) ==
-              relative(std::pow(double(n), -0.25), 1e-5));
+        CHECK(std::pow(double(radius.at(n - 1, 0.5)) / 1.5, 2) == relative(std::pow(double(n), -0.25), 1e-5));
 
     // A wall across the view at distance 2, where the middle of the pixels is 2 * 2 tan(30 degrees) / 16 wide, in scene
     // units. Across the ray they are smaller by the root of the cosine, which is 0.91 at the median distance from the

@@ -86,7 +86,6 @@ TEST_CASE("strategies: their weighed images add up to the image") {
             }
         CHECK(whole.mean().y > 0);
         for (std::size_t p = 0; p < sum.pixels().size(); ++p)
-            for (int c = 0; c < 3; ++c)
-                CHECK(sum.pixels()[p][c] == relative(double(whole.pixels()[p][c]), 1e-5));
+            for (int c = 0; c < 3; ++c) CHECK(sum.pixels()[p][c] == relative(double(whole.pixels()[p][c]), 1e-5));
     }
 }

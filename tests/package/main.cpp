@@ -1,4 +1,5 @@
-// A program outside of the project: as much as shows that the headers, their dependencies and the targets work together.
+// A program outside of the project: as much as shows that the headers, their dependencies and the targets work
+// together.
 #include <lightswitch/lightswitch.hpp>
 #include <lightswitch/version.hpp>
 

@@ -110,7 +110,8 @@ TEST_CASE("compare takes any number of images, and makes a page of them") {
     CHECK(ended.prints("mean ratio  0.750000\n"));
     const std::string page = read_text(workspace / "r.html");
     CHECK(page.starts_with("<!DOCTYPE html>"));
-    for (const char* name : {"a.pfm", "b.pfm", "c.pfm", "relMSE", "HDR-FLIP"}) CHECK(page.find(name) != std::string::npos);
+    for (const char* name : {"a.pfm", "b.pfm", "c.pfm", "relMSE", "HDR-FLIP"})
+        CHECK(page.find(name) != std::string::npos);
     // Without --reference the last one is it.
     CHECK(run(workspace, {"compare", "a.pfm", "b.pfm", "c.pfm"}).out == ended.out);
 }
@@ -119,7 +120,8 @@ TEST_CASE("compare: the page's curves belong to one method each, and know the se
     if (!lightswitch::detail::has_exr) return;
     const Workspace workspace;
     const auto render = [&](const char* method, const char* spp, const char* file) {
-        CHECK(run(workspace, {"render", "furnace", "--size", "8x8", "-m", method, "--spp", spp, "-o", file}).status == 0);
+        CHECK(run(workspace, {"render", "furnace", "--size", "8x8", "-m", method, "--spp", spp, "-o", file}).status ==
+              0);
     };
     render("path", "1", "a1.exr");
     render("path-nee", "4", "b4.exr");

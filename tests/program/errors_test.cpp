@@ -38,44 +38,47 @@ std::vector<std::string> render(std::vector<std::string> more) {
 
 TEST_CASE("a command that is missing, unknown or misspelt") {
     const Workspace workspace;
-    check_refused(workspace, {
-                                 {{}, "name a command: render, compare, verify, strategies, methods, info"},
-                                 {{"rendr"}, "did you mean \"render\"?; known are render, compare, verify, strategies, methods, info"},
-                                 {{"--bogus"}, "there is no option \"--bogus\""},
-                                 {{"methods", "path"}, "there is no use for \"path\""},
-                                 {{"--", "render"}, "name a command"},
-                                 {{"render", "furnace", "-o", "x.png", "info"}, "there is no use for \"info\""},
-                                 {{"render", "furnace", "--out", "x.png"}, "did you mean \"--output\"?"},
-                                 {{"info"}, "name a scene"},
-                                 {{"info", "furnace", "--spp", "3"}, "there is no option \"--spp\""},
-                             });
+    check_refused(
+        workspace,
+        {
+            {{}, "name a command: render, compare, verify, strategies, methods, info"},
+            {{"rendr"}, "did you mean \"render\"?; known are render, compare, verify, strategies, methods, info"},
+            {{"--bogus"}, "there is no option \"--bogus\""},
+            {{"methods", "path"}, "there is no use for \"path\""},
+            {{"--", "render"}, "name a command"},
+            {{"render", "furnace", "-o", "x.png", "info"}, "there is no use for \"info\""},
+            {{"render", "furnace", "--out", "x.png"}, "did you mean \"--output\"?"},
+            {{"info"}, "name a scene"},
+            {{"info", "furnace", "--spp", "3"}, "there is no option \"--spp\""},
+        });
 }
 
 TEST_CASE("render: scenes and methods that do not exist") {
     const Workspace workspace;
     workspace.write("mesh.obj", "v 0 0 0\n");
     workspace.write("broken.xml", "<scene version=\"3.0.0\">\n  <sensor type=\"fisheye\"/>\n</scene>\n");
-    check_refused(workspace, {
-                                 {{"render"}, "name a scene"},
-                                 {{"render", "cornel-box", "-o", "x.png"}, "did you mean \"cornell-box\"?"},
-                                 {{"render", "missing.xml", "-o", "x.png"}, "missing.xml: no such file"},
-                                 {{"render", "mesh.obj", "-o", "x.png"}, "scene files are Mitsuba 3 XML"},
-                                 {{"render", "broken.xml", "-o", "x.png"}, "broken.xml:2: "},
-                                 {render({"--method", "pathnee"}),
-                                  "did you mean \"path-nee\"?; known are silhouette, phong, path"},
-                                 {render({"--method", "radiosity"}), "no method \"radiosity\"; known are silhouette"},
-                                 {render({"--method", "PATH"}), "did you mean \"path\"?"},
-                                 {render({"--method", "Path_Nee"}), "did you mean \"path-nee\"?"},
-                                 {render({"--method", "nee"}), "did you mean \"path-nee\"?"},
-                                 {render({"--method", "photonmapping"}), "did you mean \"photon\"?"},
-                                 {render({"--method", "xyz"}), "no method \"xyz\"; known are silhouette"},
-                                 {render({"--method", ""}), "--method: the name is empty"},
-                                 {{"render", "cornell", "-o", "x.png"}, "did you mean \"cornell-box\"?"},
-                                 {{"verify", "furnace", "-m", "pth"}, "--methods: there is no method \"pth\"; did you mean \"path\"?"},
-                                 {{"verify", "furnace", "-r", "pth"}, "--reference: there is no method \"pth\"; did you mean \"path\"?"},
-                                 {render({"--define", "a=1"}), "stock scenes have no parameters"},
-                                 {render({"--define", "a"}), "not NAME=VALUE"},
-                             });
+    check_refused(
+        workspace,
+        {
+            {{"render"}, "name a scene"},
+            {{"render", "cornel-box", "-o", "x.png"}, "did you mean \"cornell-box\"?"},
+            {{"render", "missing.xml", "-o", "x.png"}, "missing.xml: no such file"},
+            {{"render", "mesh.obj", "-o", "x.png"}, "scene files are Mitsuba 3 XML"},
+            {{"render", "broken.xml", "-o", "x.png"}, "broken.xml:2: "},
+            {render({"--method", "pathnee"}), "did you mean \"path-nee\"?; known are silhouette, phong, path"},
+            {render({"--method", "radiosity"}), "no method \"radiosity\"; known are silhouette"},
+            {render({"--method", "PATH"}), "did you mean \"path\"?"},
+            {render({"--method", "Path_Nee"}), "did you mean \"path-nee\"?"},
+            {render({"--method", "nee"}), "did you mean \"path-nee\"?"},
+            {render({"--method", "photonmapping"}), "did you mean \"photon\"?"},
+            {render({"--method", "xyz"}), "no method \"xyz\"; known are silhouette"},
+            {render({"--method", ""}), "--method: the name is empty"},
+            {{"render", "cornell", "-o", "x.png"}, "did you mean \"cornell-box\"?"},
+            {{"verify", "furnace", "-m", "pth"}, "--methods: there is no method \"pth\"; did you mean \"path\"?"},
+            {{"verify", "furnace", "-r", "pth"}, "--reference: there is no method \"pth\"; did you mean \"path\"?"},
+            {render({"--define", "a=1"}), "stock scenes have no parameters"},
+            {render({"--define", "a"}), "not NAME=VALUE"},
+        });
 }
 
 TEST_CASE("render: outputs that cannot be written") {
@@ -145,7 +148,8 @@ TEST_CASE("numbers at their extremes: every option names itself") {
         check_refused(workspace, calls);
     };
     refuse("render", {"--spp", "--seconds", "--error", "--size"}, {"-5", "0", "nan", "inf", "", "x"});
-    refuse("render", {"--spp", "--size", "--seed", "--threads", "--max-depth"}, {"1e300", "99999999999999999999", "1.5"});
+    refuse("render", {"--spp", "--size", "--seed", "--threads", "--max-depth"},
+           {"1e300", "99999999999999999999", "1.5"});
     refuse("verify", {"--seconds", "--confidence", "--tolerance", "--lengths"}, {"-5", "nan", "inf", ""});
     refuse("strategies", {"--spp", "--max-depth", "--size"}, {"-5", "0", "nan", ""});
 }
@@ -159,13 +163,14 @@ TEST_CASE("behind -- stand files, whatever they are called") {
     CHECK(run(workspace, {"render", "--spp", "1", "--size", "4x4", "-q", "-o", "-1.pfm", "--", "-in.xml"}).status == 0);
     CHECK(run(workspace, {"render", "-in.xml", "--"}).says("no option \"-in.xml\""));
     CHECK(run(workspace, {"compare", "-o", "x.pfm", "--", "-1.pfm", "-1.pfm"}).status == 0);
-    check_refused(workspace, {
-                                 {{"render", "--", "-in.xml"}, "name a file with --output"},
-                                 {{"render", "furnace", "-o", "y.png", "--", "-x"}, "there is no use for"},
-                                 {{"compare", "--", "-1.pfm", "-1.pfm", "-o", "x.png"}, "./-o: has no extension"},
-                                 {{"render", "-o", "-1.pfm", "--stats", "-in.xml", "--", "-in.xml"}, "--stats: -in.xml is read"},
-                                 {{"verify", "--images", "-1.pfm", "x.pfm", "x.pfm", "--", "-out.xml"}, "are the same image"},
-                             });
+    check_refused(workspace,
+                  {
+                      {{"render", "--", "-in.xml"}, "name a file with --output"},
+                      {{"render", "furnace", "-o", "y.png", "--", "-x"}, "there is no use for"},
+                      {{"compare", "--", "-1.pfm", "-1.pfm", "-o", "x.png"}, "./-o: has no extension"},
+                      {{"render", "-o", "-1.pfm", "--stats", "-in.xml", "--", "-in.xml"}, "--stats: -in.xml is read"},
+                      {{"verify", "--images", "-1.pfm", "x.pfm", "x.pfm", "--", "-out.xml"}, "are the same image"},
+                  });
 }
 
 TEST_CASE("standard output that cannot be written is an error, and never a file") {

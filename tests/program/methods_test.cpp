@@ -5,7 +5,7 @@
 #include "support/relative.hpp"
 
 #include <lightswitch/film/image_io.hpp>
-#include <lightswitch/render/any_method.hpp>
+#include <lightswitch/method/any_method.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -155,8 +155,7 @@ TEST_CASE("the depth of paths is that of the command line, for every method that
                                                 "--max-depth", depth, "-q", "-o", "x.pfm"});
             CAPTURE(method);
             CHECK(ended.status == 0);
-            CHECK(lightswitch::load_image(workspace / "x.pfm").mean().x ==
-                  relative(value, 0.05));
+            CHECK(lightswitch::load_image(workspace / "x.pfm").mean().x == relative(value, 0.05));
         }
 }
 

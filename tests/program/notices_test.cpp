@@ -1,7 +1,7 @@
 // What the program says of mesh files that hold what it skips or guesses.
 
-#include "support/relative.hpp"
 #include "program/process.hpp"
+#include "support/relative.hpp"
 
 #include <lightswitch/film/image_io.hpp>
 

@@ -73,8 +73,8 @@ struct Ended {
 /// The program at work in a directory.
 class Process {
 public:
-    /// `standard_output` names a file to use instead of keeping the output, "" to close the stream. `prepare` is called in the
-    /// new process, and tells whether it may go on; where it may not, the status is 127.
+    /// `standard_output` names a file to use instead of keeping the output, "" to close the stream. `prepare` is called
+    /// in the new process, and tells whether it may go on; where it may not, the status is 127.
     Process(const Workspace& workspace, std::vector<std::string> arguments, const char* standard_output = nullptr,
             const std::function<bool()>& prepare = {}) {
         std::string program = LIGHTSWITCH_PROGRAM;

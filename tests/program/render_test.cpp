@@ -156,8 +156,7 @@ TEST_CASE("--stats: every key, and alone on standard output") {
     }
     CHECK(number(ended.out, "rays") >= 16 * 12 * 4);
     CHECK(number(ended.out, "rays") > number(ended.out, "shadow_rays"));
-    CHECK(number(ended.out, "samples_per_second") ==
-          relative(16 * 12 * 4 / number(ended.out, "seconds"), 1e-6));
+    CHECK(number(ended.out, "samples_per_second") == relative(16 * 12 * 4 / number(ended.out, "seconds"), 1e-6));
     CHECK(run(workspace, furnace({"-m", "phong", "--stats", "-"})).prints("\"max_depth\": null"));
 }
 

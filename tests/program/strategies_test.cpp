@@ -71,22 +71,21 @@ TEST_CASE("strategies: they add up to the image, and the picture shows each in i
             const Image one = load_image(workspace / file(i, length + 1 - i));
             CHECK(one.metadata.at("strategy") ==
                   "s=" + std::to_string(i) + " t=" + std::to_string(length + 1 - i) + ", weighted");
-            const int left = margin + (4 - in_row) * (size + gap) / 2 + gap + i * (size + gap), top = gap + (length - 1) * pitch;
+            const int left = margin + (4 - in_row) * (size + gap) / 2 + gap + i * (size + gap),
+                      top = gap + (length - 1) * pitch;
             for (int y = 0; y < size; ++y)
                 for (int x = 0; x < size; ++x) {
                     sum(x, y) += one(x, y);
                     const lightswitch::Rgb shown = lightswitch::expose(one(x, y), exposure),
                                            found = sheet(left + x, top + y);
-                    for (int c = 0; c < 3; ++c)
-                        CHECK(double(found[c]) == relative(double(shown[c]), 0.005));
+                    for (int c = 0; c < 3; ++c) CHECK(double(found[c]) == relative(double(shown[c]), 0.005));
                     white += std::max({found.x, found.y, found.z}) >= 1 ? 1 : 0;
                 }
         }
     }
     CHECK(whole.mean().x > 0.1);
     for (std::size_t i = 0; i < sum.pixels().size(); ++i)
-        for (int c = 0; c < 3; ++c)
-            CHECK(double(sum.pixels()[i][c]) == relative(double(whole.pixels()[i][c]), 1e-4));
+        for (int c = 0; c < 3; ++c) CHECK(double(sum.pixels()[i][c]) == relative(double(whole.pixels()[i][c]), 1e-4));
     CHECK(std::abs(white - tiles * size * size / 100) <= 1);
 }
 

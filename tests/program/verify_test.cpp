@@ -51,9 +51,8 @@ TEST_CASE("verify: methods on a scene") {
 TEST_CASE("verify: by default all methods that can have the reference's image") {
     const Workspace workspace;
     const auto verified = [&](const char* scene) {
-        const Ended ended =
-            run(workspace, {"verify", scene, "--size", "4x4", "--seconds", "0.01", "--lengths", "0", "--bootstrap",
-                                        "1000", "--json", "-"});
+        const Ended ended = run(workspace, {"verify", scene, "--size", "4x4", "--seconds", "0.01", "--lengths", "0",
+                                            "--bootstrap", "1000", "--json", "-"});
         CHECK(ended.err.find("warning") == std::string::npos);
         std::set<std::string> names;
         const auto json = nlohmann::json::parse(ended.out);
@@ -87,8 +86,8 @@ TEST_CASE("verify: the reference makes what the methods make, or leaves out what
     using Lines = std::set<std::string>;
     const std::string caustics = "caustics of point and directional lights";
     CHECK(compared("caustic.xml", {"--bootstrap", "1000"}) ==
-          Lines{"path-nee, bdpt, without " + caustics, "light, bdpt, without what is seen in mirrors or through glass", "mlt, bdpt",
-                "photon, bdpt, which lacks " + caustics + ", seen in mirrors or through glass",
+          Lines{"path-nee, bdpt, without " + caustics, "light, bdpt, without what is seen in mirrors or through glass",
+                "mlt, bdpt", "photon, bdpt, which lacks " + caustics + ", seen in mirrors or through glass",
                 "vcm, bdpt, which lacks " + caustics + ", seen in mirrors or through glass"});
     CHECK(compared("caustic.xml", {"--methods", "vcm", "--reference", "path-nee"}) ==
           Lines{"vcm, path-nee, which lacks " + caustics});
@@ -102,9 +101,9 @@ TEST_CASE("verify: the reference makes what the methods make, or leaves out what
 TEST_CASE("verify: the options of single methods hold for those that have them") {
     const Workspace workspace;
     // Light is spread over the whole box, so the picture has no shadows.
-    const Ended blurred = run(workspace, {"verify", "cornell-box", "--methods", "photon", "--reference", "path-nee",
-                                          "--radius", "1000", "--size", "16x16", "--seconds", "5", "--lengths", "0", "--json",
-                                          "-"});
+    const Ended blurred =
+        run(workspace, {"verify", "cornell-box", "--methods", "photon", "--reference", "path-nee", "--radius", "1000",
+                        "--size", "16x16", "--seconds", "5", "--lengths", "0", "--json", "-"});
     CHECK(blurred.status != 0);
     CHECK(nlohmann::json::parse(blurred.out)["verdicts"][0]["parts"][0]["bias_interval"][0][1] < -0.2);
     const Ended sharp = run(workspace, {"verify", "furnace", "--methods", "vcm,path-nee", "--radius", "0", "--size",
@@ -137,7 +136,8 @@ TEST_CASE("verify: files against files, and against a method") {
     CHECK(json["verdicts"][0]["verdict"] == "disagrees");
 
     CHECK(json["verdicts"][0]["parts"][0]["bias_interval"][1][0] > 0);
-    // The furnace is 2 everywhere; the reference is rendered at the images' size. A list of files is as good as a pattern.
+    // The furnace is 2 everywhere; the reference is rendered at the images' size. A list of files is as good as a
+    // pattern.
     CHECK(run(workspace, {"verify", "furnace", "--images", "two-1.pfm", "two-2.pfm", "two-3.pfm", "two-4.pfm",
                           "two-5.pfm", "two-6.pfm", "two-7.pfm", "--reference", "path-nee", "--tolerance", "0.5"})
               .status == 0);

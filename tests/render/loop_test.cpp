@@ -164,7 +164,8 @@ TEST_CASE("a budget of error ends when the error is reached, and not before 16 i
     CHECK(black.statistics.iterations == 40);
     CHECK(std::isinf(black.error));
     check_progress(black);
-    const Run late = run([](std::uint64_t iteration, auto&) { return iteration < 30 ? 0.0f : 1.0f; }, {.samples = 99, .error = 100});
+    const Run late =
+        run([](std::uint64_t iteration, auto&) { return iteration < 30 ? 0.0f : 1.0f; }, {.samples = 99, .error = 100});
     CHECK(late.statistics.iterations == 31);
     check_progress(late);
     // An error that jumps up when something rare is met must not turn the progress back.

@@ -1,7 +1,7 @@
 // write_report small|large|single|words FILE: writes a report that browser.py looks at. Its pixel values are exact in the
 // report's encoding.
 
-#include <lightswitch/compare/report.hpp>
+#include <lightswitch/report/report.hpp>
 
 #include <cmath>
 #include <iostream>
@@ -35,7 +35,8 @@ Report large_report() {
 }
 
 Report small_report() {
-    Report report{.title = "Title <i>&amp;</i> \"quoted\" ☀", .summary = "One </main><script>alert(1)</script>\n\nTwo"};
+    const std::string title = "Title <i>&amp;</i> \"quoted\" ☀";
+    Report report{.title = title, .summary = "One </main><script>alert(1)</script>\n\nTwo"};
     const char* names[] = {"reference", "</script><b id=planted>x</b>", "größer \"näher\" & 'mehr' ☀"};
     for (int k = 0; k < 3; ++k) {
         Image image(48, 32);

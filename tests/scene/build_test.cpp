@@ -189,7 +189,8 @@ TEST_CASE("build: triangles without area are counted and dropped, and the others
     GreyDescription scene = grey_description();
     Mesh grid;
     for (int i = 0; i < 4; ++i) grid.positions.push_back({i, 0, 0}), grid.positions.push_back({i, 1, 0});
-    // Degenerate ones before, between and after: a repeated corner, corners on a line, corners that only doubles tell apart.
+    // Degenerate ones before, between and after: a repeated corner, corners on a line, corners that only doubles tell
+    // apart.
     grid.positions.push_back({0, 1e-20, 0});
     grid.triangles = {{0, 0, 1}, {0, 2, 1}, {0, 2, 4}, {2, 4, 3}, {0, 8, 2}, {4, 6, 5}, {5, 5, 5}};
     for (const DVec3& p : grid.positions) grid.normals.push_back(glm::normalize(DVec3(0.1 * p.x, 0.1, 1)));

@@ -8,8 +8,8 @@
 #include <limits>
 
 using namespace lightswitch;
-using test::relative;
 using test::Random;
+using test::relative;
 
 namespace {
 
@@ -48,8 +48,8 @@ FilmDescription film(int width, int height) {
     return result;
 }
 
-/// What Mitsuba 3.9 answers for a camera at (1, 2, 3) that looks at (0.5, -1, 0.2) with (0, 0.2, 1) upwards, mirrored in x
-/// when `reflected`, and with focus at 2.5: `sensor.sample_ray` of the variant scalar_rgb.
+/// What Mitsuba 3.9 answers for a camera at (1, 2, 3) that looks at (0.5, -1, 0.2) with (0, 0.2, 1) upwards, mirrored
+/// in x when `reflected`, and with focus at 2.5: `sensor.sample_ray` of the variant scalar_rgb.
 struct Pin {
     Axis axis;
     double fov;
@@ -377,8 +377,8 @@ TEST_CASE("camera: rays are those of Mitsuba") {
 }
 
 TEST_CASE("camera: what is far from the scene sees it like what is near") {
-    // A scene of size 1 at distance 1e7, as a tiny field of view shows it: rays meet a plane through the scene where those
-    // of the same camera in double precision do. One step of float at that distance is 1.
+    // A scene of size 1 at distance 1e7, as a tiny field of view shows it: rays meet a plane through the scene where
+    // those of the same camera in double precision do. One step of float at that distance is 1.
     const double distance = 1e7;
     for (const DVec3& center : {DVec3(0), DVec3(3e5, -7e6, 2e4)}) {
         const Place place{center, 0.5};

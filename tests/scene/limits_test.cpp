@@ -1,5 +1,5 @@
-// How large and how small things may be beside each other. What is refused names its element; what is not is rendered without
-// anything that is not finite, at any scale to the same bits.
+// How large and how small things may be beside each other. What is refused names its element; what is not is rendered
+// without anything that is not finite, at any scale to the same bits.
 
 #include <lightswitch/method/bdpt.hpp>
 #include <lightswitch/method/light_tracer.hpp>
@@ -34,8 +34,8 @@ GreyDescription ball(int k) {
 
 using Spoil = std::function<void(GreyDescription&, double unit)>;
 
-/// The message with which the scene is refused after `spoil`, the same at all scales, or empty. Otherwise it is rendered by methods that
-/// see it from all sides.
+/// The message with which the scene is refused after `spoil`, the same at all scales, or empty. Otherwise it is
+/// rendered by methods that see it from all sides.
 std::string refusal(const Spoil& spoil) {
     std::string first;
     std::vector<Image> images;
@@ -192,7 +192,8 @@ TEST_CASE("limits: a point light may be as far away as single precision can squa
     const auto light = [](double distance) {
         return refusal([=](GreyDescription& s, double unit) {
             // Twice 2^k: render space is half as large as the ball.
-            s.add(Source(PointSource{DVec3(0, 2 * distance * unit, 0), Rgb(static_cast<float>(1e-5 * unit * unit))}), a_light);
+            s.add(Source(PointSource{DVec3(0, 2 * distance * unit, 0), Rgb(static_cast<float>(1e-5 * unit * unit))}),
+                  a_light);
         });
     };
     CHECK(light(3).empty());

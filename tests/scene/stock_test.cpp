@@ -94,7 +94,8 @@ TEST_CASE("stock scenes: the torus knot is closed, and its normals look outwards
 TEST_CASE("stock scenes: the rooms of the ajar door are closed, and show the fronts of their surfaces only") {
     const FullScene scene = stock::ajar_door();
     const IterationPoints points(Sampling::independent, 3, 0);
-    // Above the table, and behind the lamp's front: free air in which the backs of surfaces cannot be seen, nor be behind glass.
+    // Above the table, and behind the lamp's front: free air in which the backs of surfaces cannot be seen, nor be
+    // behind glass.
     const std::pair<DVec3, DVec3> rooms[] = {{{-0.4, 1.4, 0.7}, {2.5, 2.5, 4.9}},
                                              {{-2.4, 0.1, -2.9}, {2.5, 2.5, -1.01}}};
     std::uint64_t number = 0;

@@ -8,8 +8,8 @@
 #include <doctest/doctest.h>
 
 using namespace lightswitch;
-using test::relative;
 using test::Random;
+using test::relative;
 
 namespace {
 

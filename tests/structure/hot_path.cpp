@@ -35,10 +35,8 @@ int main(int argc, char** argv) {
 #ifdef PLANT_VIRTUAL
     const ls::FullScene scene = ls::build_scene<ls::AllBsdfs, ls::AllLights>(*ls::stock::describe(name));
     Virtual method;
-    if (argc > 2)
-        method.method = std::make_shared<Concrete<ls::PathTracer>>();
-    else
-        method.method = std::make_shared<Concrete<ls::PathTracerNee>>();
+    if (argc > 2) method.method = std::make_shared<Concrete<ls::PathTracer>>();
+    else method.method = std::make_shared<Concrete<ls::PathTracerNee>>();
     sum = ls::render(scene, method, {.samples = 1}).mean().x;
 #else
     const ls::AnyScene scene = ls::build_any(*ls::stock::describe(name));

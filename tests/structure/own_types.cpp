@@ -1,5 +1,5 @@
-// What a user forgets in a method or a surface model of their own, or mistakes for a scene or a method, must be named by the
-// compiler. Each CASE is right as it is, and wrong in one thing when MUST_NOT_COMPILE is defined.
+// What a user forgets in a method or a surface model of their own, or mistakes for a scene or a method, must be named
+// by the compiler. Each CASE is right as it is, and wrong in one thing when MUST_NOT_COMPILE is defined.
 
 #include <lightswitch/method/path_tracer.hpp>
 #include <lightswitch/render/render.hpp>
@@ -71,15 +71,13 @@ struct Method {
 #elif CASE == 8
         frame.pixels([](const ls::Ray&, auto&, const auto&) { return RIGHT_OR_WRONG(ls::Rgb(0), 0.0f); });
 #elif CASE == 9
-        frame.pixels([calls](const ls::Ray&, auto&) RIGHT_OR_WRONG(, mutable) {
-            return ls::Rgb(float(RIGHT_OR_WRONG(calls, ++calls)));
-        });
+        frame.pixels([calls](const ls::Ray&, auto&)
+                         RIGHT_OR_WRONG(, mutable) { return ls::Rgb(float(RIGHT_OR_WRONG(calls, ++calls))); });
 #elif CASE == 10
         frame.paths(10, [](std::uint64_t, auto& UNLESS_FORGOTTEN(, auto&)) {});
 #else
-        frame.paths(10, [calls](std::uint64_t, auto&, auto&) RIGHT_OR_WRONG(, mutable) {
-            RIGHT_OR_WRONG(static_cast<void>(calls), ++calls);
-        });
+        frame.paths(10, [calls](std::uint64_t, auto&, auto&)
+                            RIGHT_OR_WRONG(, mutable) { RIGHT_OR_WRONG(static_cast<void>(calls), ++calls); });
 #endif
         static_cast<void>(calls);
     }
@@ -92,7 +90,7 @@ ls::Image image(const ls::AnyScene& any) {
     return std::visit([&](const auto& scene) { return ls::render(RIGHT_OR_WRONG(scene, any), ls::PathTracer{}); }, any);
 }
 #elif CASE == 14
-#include <lightswitch/compare/verify.hpp>
+#include <lightswitch/verify/verify.hpp>
 ls::Verdict verdict(const ls::DiffuseScene& scene) {
     return ls::verify(RIGHT_OR_WRONG(scene, 42), ls::PathTracer{}, ls::PathTracer{});
 }

@@ -1,5 +1,5 @@
-// Densities with respect to different measures must not mix. Each CASE is right for two densities of one measure, which is
-// the control, and must not compile when the second one is of another measure.
+// Densities with respect to different measures must not mix. Each CASE is right for two densities of one measure, which
+// is the control, and must not compile when the second one is of another measure.
 
 #include <lightswitch/core/pdf.hpp>
 

@@ -20,7 +20,24 @@ nothing() {
   [ -z "$found" ] || { printf '%s\n%s\n' "$1" "$found"; return 1; }
 }
 
-[ "$(find . -name '*.hpp' | wc -l)" -gt 0 ] || { echo "no headers in $PWD"; exit 2; }
+# Which folder stands on which: an include goes to its own folder or to one on a lower floor.
+floors() {
+  grep -rE --include='*.hpp' '^#include <lightswitch/' . | awk -F'[/:<>]' '
+    BEGIN {
+      number = split("core | geometry | bsdf embree film light | scene | compare load render | method | verify | report", names, " ")
+      level = 1
+      for (i = 1; i <= number; ++i)
+        if (names[i] == "|") ++level
+        else floor[names[i]] = level
+    }
+    $2 !~ /[.]hpp$/ {  # a header in a folder
+      from = $2; to = $6
+      if (!(from in floor)) print "./" from " has no floor: give it one in tests/structure/rules.sh"
+      else if (from != to && !(floor[to] < floor[from])) print $0
+    }' | sort -u | nothing 'includes that climb, or go sideways (core at the bottom; see floors in tests/structure/rules.sh):'
+}
+
+[ "$(find . -name "*.[ch]pp" | wc -l)" -gt 0 ] || { echo "no C++ files in $PWD"; exit 2; }
 
 case $rule in
   one_rtcore) only_one 'rtcore' embree/api.hpp ;;
@@ -32,8 +49,11 @@ case $rule in
   unit_float) grep -rnE '(static_cast<float>|float) *\([^()]*next(_2d)?\(\)' . | nothing 'would round up to 1, use next_float():' ;;
   no_approx) grep -rnE --include='*.[ch]pp' '\<Approx\>' . | nothing 'takes 1 for small, use test::relative (tests/support/relative.hpp):' ;;
   pragma_once) grep -rL --include='*.hpp' '^#pragma once$' . | nothing 'no #pragma once in:' ;;
-  length) find . -name '*.hpp' -exec awk 'END { if (FNR > 320) print FILENAME ": " FNR " lines" }' {} \; |
+  length) find . -name '*.hpp' ! -path ./report/page.hpp -exec awk 'END { if (FNR > 320) print FILENAME ": " FNR " lines" }' {} \; |
     nothing 'headers longer than 320 lines:' ;;
-  no_inl) find . -type f ! -name '*.hpp' | nothing 'only .hpp files belong in include/:' ;;
+  floors) floors ;;
+  width) find . \( -name '*.[ch]pp' -o -name '*.js' -o -name '*.css' -o -name '*.html' \) ! -path ./report/page.hpp -exec awk 'length > 120 { print FILENAME ":" FNR }' {} + |
+    nothing 'lines longer than 120 columns:' ;;
+  no_inl) find . -type f ! -name '*.hpp' ! -path './report/page/*' | nothing 'only .hpp files belong in include/:' ;;
   *) echo "unknown rule: $rule"; exit 2 ;;
 esac

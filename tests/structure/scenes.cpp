@@ -1,8 +1,8 @@
-// What the compiler must refuse about scenes: more kinds than a scene type can number, and a session on one that is about to go.
-// Each CASE is right unless MUST_NOT_COMPILE is defined.
+// What the compiler must refuse about scenes: more kinds than a scene type can number, and a session on one that is
+// about to go. Each CASE is right unless MUST_NOT_COMPILE is defined.
 
-#include <lightswitch/render/render.hpp>
 #include <lightswitch/method/path_tracer.hpp>
+#include <lightswitch/render/render.hpp>
 #include <lightswitch/scene/stock.hpp>
 
 namespace ls = lightswitch;
@@ -28,7 +28,7 @@ template <int>
 struct Lamp : ls::PointLight {};
 template <int... Number>
 std::size_t size(std::integer_sequence<int, Number...>) {
-    return sizeof(ls::Scene<ls::Bsdfs<ls::Lambert>, ls::Lights<Lamp<Number>...>>);
+    return sizeof(ls::Scene<ls::Bsdfs<ls::Lambert>, ls::Lights<Lamp<Number>...> >);
 }
 std::size_t all() { return size(std::make_integer_sequence<int, kinds>()); }
 #elif CASE == 3 || CASE == 4

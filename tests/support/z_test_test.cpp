@@ -1,7 +1,7 @@
 // The yardstick of the statistical tests is tested itself.
 
-#include "relative.hpp"
 #include "support/z_test.hpp"
+#include "relative.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,10 +1,11 @@
-// Scenes where one side cannot make what the other does, and where light stands closer than anything that an image resolves.
+// Scenes where one side cannot make what the other does, and where light stands closer than anything that an image
+// resolves.
 
 #include "verify/planted/scenes.hpp"
 
-#include <lightswitch/compare/verify.hpp>
 #include <lightswitch/method/bdpt.hpp>
 #include <lightswitch/method/photon_mapping.hpp>
+#include <lightswitch/verify/verify.hpp>
 
 #include <doctest/doctest.h>
 

@@ -4,6 +4,7 @@
 #include "verify/planted/catalogue.hpp"
 
 #include <lightswitch/lightswitch.hpp>
+#include <lightswitch/verify/verify.hpp>
 
 #include <doctest/doctest.h>
 
@@ -95,8 +96,8 @@ TEST_CASE("a wrong one is found out, with its size, its place and its path lengt
     CHECK(verdict.parts.front().interval[0].high > 0.02);
 }
 
-// False alarms: 1e-3 each by the statement of `verify`, so one in all of them with probability 0.05; the seeds are fixed. This is the other
-// direction: every bug must be found, with few samples.
+// False alarms: 1e-3 each by the statement of `verify`, so one in all of them with probability 0.05; the seeds are
+// fixed. This is the other direction: every bug must be found, with few samples.
 TEST_CASE("planted bugs are found, at the right path length") {
     for (const auto& bug : test::planted_bugs()) {
         const auto [wrong, right] = bug.make();

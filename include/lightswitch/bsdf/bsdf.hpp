@@ -11,8 +11,8 @@
 
 namespace lightswitch {
 
-/// What travels along a path: radiance (paths from the camera) or importance (paths from a light). They differ where light
-/// is refracted (Veach 1997, section 5.2).
+/// What travels along a path: radiance (paths from the camera) or importance (paths from a light). They differ where
+/// light is refracted (Veach 1997, section 5.2).
 enum class Transport { radiance, importance };
 
 /// A BSDF evaluated for one pair of directions.
@@ -27,7 +27,7 @@ struct BsdfSample {
     Rgb weight{0};          ///< BSDF * |cosine| / density; for a specular lobe the ratio of the two Dirac distributions
     SolidAnglePdf pdf{};    ///< density of `wi`; 0 for a specular lobe, which has none
     bool specular = false;  ///< true when `wi` comes from a Dirac distribution
-    float eta = 1;          ///< relative index of refraction crossed from the side of `wo` to that of `wi`; 1 for reflection
+    float eta = 1;  ///< relative index of refraction crossed from the side of `wo` to that of `wi`; 1 for reflection
 };
 
 /// The three terms of Phong's model by which the `phong` method shows a surface.
@@ -38,8 +38,8 @@ struct PhongTerms {
 };
 
 /// A surface model. Directions are unit vectors in the shading frame (z is the normal), pointing away from the surface;
-/// `wo` is where the path comes from and `wi` where it goes. `u` is uniform in the unit cube: by custom x and y choose the
-/// direction and z the lobe. Implementations must be usable from several threads at once (no mutable state).
+/// `wo` is where the path comes from and `wi` where it goes. `u` is uniform in the unit cube: by custom x and y choose
+/// the direction and z the lobe. Implementations must be usable from several threads at once (no mutable state).
 ///
 /// - `specular`: true when all lobes are Dirac distributions, so that `evaluate` is always zero;
 /// - `evaluate(wo, wi, transport)`: BSDF and density for a given pair;
@@ -60,10 +60,11 @@ namespace detail {
 /// Named for every type that is to be a surface model, so that the compiler says which one is none and what it lacks.
 template <class B>
 struct RequireBsdf {
-    static_assert(Bsdf<B>,
-                  "a surface model needs `static constexpr bool specular`, "
-                  "`BsdfValue evaluate(const Vec3& wo, const Vec3& wi, Transport) const`, "
-                  "`Maybe<BsdfSample> sample(const Vec3& wo, const Vec3& u, Transport) const` and `std::string problem() const`");
+    static_assert(
+        Bsdf<B>,
+        "a surface model needs `static constexpr bool specular`, "
+        "`BsdfValue evaluate(const Vec3& wo, const Vec3& wi, Transport) const`, "
+        "`Maybe<BsdfSample> sample(const Vec3& wo, const Vec3& u, Transport) const` and `std::string problem() const`");
     static constexpr bool value = true;
 };
 

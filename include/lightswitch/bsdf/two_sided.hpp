@@ -24,11 +24,8 @@ struct TwoSided {
     }
 
     std::string problem() const { return inner.problem(); }
-    PhongTerms phong() const
-        requires requires(const Inner& i) { i.phong(); }
-    {
-        return inner.phong();
-    }
+    PhongTerms phong() const requires requires(const Inner& i) { i.phong(); }
+    { return inner.phong(); }
 
 private:
     static Vec3 flip(const Vec3& w, float side) { return {w.x, w.y, w.z * side}; }

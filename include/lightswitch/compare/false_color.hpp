@@ -22,12 +22,12 @@ struct FalseColorOptions {
     enum class Map { diverging, sequential };
 
     Map map = Map::diverging;
-    float scale = 0;         ///< the value at the end of the map; 0 takes it from `percentile`, and rounds it up
-    float percentile = 99;   ///< of the pixels' magnitudes, in (0, 100]: larger values are clamped
+    float scale = 0;          ///< the value at the end of the map; 0 takes it from `percentile`, and rounds it up
+    float percentile = 99;    ///< of the pixels' magnitudes, in (0, 100]: larger values are clamped
     bool black_zero = false;  ///< a diverging map through black instead of white
-    bool legend = true;      ///< a colour bar with numbers below the picture
-    std::string caption{};   ///< what the numbers are, written below the bar (ASCII)
-    int letter_size = 0;     ///< pixels per dot of the legend's letters; 0 chooses by the width of the picture
+    bool legend = true;       ///< a colour bar with numbers below the picture
+    std::string caption{};    ///< what the numbers are, written below the bar (ASCII)
+    int letter_size = 0;      ///< pixels per dot of the legend's letters; 0 chooses by the width of the picture
 };
 
 namespace detail {
@@ -58,9 +58,7 @@ inline Rgb diverging_color(float t, bool black_zero) {
 }
 
 /// Colour of `t` in [0,1]: lightness rises linearly while the hue turns from violet through green to yellow.
-inline Rgb sequential_color(float t) {
-    return from_oklch(0.22f + 0.70f * t, 0.10f + 0.07f * t * t, 310 - 205 * t);
-}
+inline Rgb sequential_color(float t) { return from_oklch(0.22f + 0.70f * t, 0.10f + 0.07f * t * t, 310 - 205 * t); }
 
 /// The channel of largest magnitude, with its sign, so that errors of opposite sign in two channels do not cancel.
 inline float dominant_channel(const Rgb& p) {
@@ -94,8 +92,8 @@ inline Rgb map_color(float value, float scale, const FalseColorOptions& options)
                                                             : sequential_color(std::abs(t));
 }
 
-/// The smallest of 1, 1.5, 2, 3, 4, 5, 6, 8 and 10, times a power of ten, that is not below a positive `value`: its half and its
-/// quarters are round, too.
+/// The smallest of 1, 1.5, 2, 3, 4, 5, 6, 8 and 10, times a power of ten, that is not below a positive `value`: its
+/// half and its quarters are round, too.
 inline float round_up(float value) {
     const double power = std::pow(10, std::floor(std::log10(static_cast<double>(value))));
     for (const double digit : {1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0})
@@ -119,7 +117,8 @@ inline Image legend(int width, float scale, const FalseColorOptions& options) {
         labels.emplace_back(text.data());
         widest = std::max(widest, text_width(labels.back(), dot));
     }
-    width = std::max({width, steps * (widest + 3 * dot) + widest + 2 * margin, text_width(options.caption, dot) + 2 * margin});
+    width = std::max(
+        {width, steps * (widest + 3 * dot) + widest + 2 * margin, text_width(options.caption, dot) + 2 * margin});
     const int bar_left = margin + widest / 2, bar_width = width - 2 * bar_left;
     Image image(width, 2 * margin + bar + line + (options.caption.empty() ? 0 : line + dot));
     const Rgb paper = srgb(255, 255, 255), ink = srgb(20, 20, 20);
@@ -178,8 +177,8 @@ inline Image false_color(const Image& values, const FalseColorOptions& options =
     return options.legend ? detail::with_legend(picture, scale, options) : picture;
 }
 
-/// The legend of such pictures by itself, for a sheet of several that share `options.scale`: about `width` pixels wide. Throws
-/// `Error` when the scale is not given, and for options out of their range.
+/// The legend of such pictures by itself, for a sheet of several that share `options.scale`: about `width` pixels wide.
+/// Throws `Error` when the scale is not given, and for options out of their range.
 inline Image color_bar(int width, const FalseColorOptions& options) {
     detail::check(options);
     if (!(options.scale > 0)) throw Error("a colour bar by itself needs a scale");

@@ -14,6 +14,7 @@ namespace detail {
 
 /// The printable ASCII characters from the blank to the tilde. A glyph is seven rows from the top; a row is a digit to
 /// base 32 (0-9, a-v) whose highest bit is the leftmost of five dots.
+// clang-format off
 inline constexpr std::string_view glyphs =
     "0000000" "4444404" "aa00000" "aavavaa" "4fke5u4" "op248j3" "cik8lid" "4400000"   //   ! " # $ % & '
     "2488842" "8422248" "04lel40" "044v440" "0000c48" "000v000" "00000cc" "01248g0"   // ( ) * + , - . /
@@ -27,6 +28,7 @@ inline constexpr std::string_view glyphs =
     "ggmphhh" "40c444e" "20622ic" "ggikoki" "c44444e" "00qllhh" "00mphhh" "00ehhhe"   // h i j k l m n o
     "00uhugg" "00djf11" "00mpggg" "00ege1u" "88s8896" "00hhhjd" "00hhha4" "00hhlla"   // p q r s t u v w
     "00ha4ah" "00hhf1e" "00v248v" "2448442" "4444444" "8442448" "009li00";             // x y z { | } ~
+// clang-format on
 static_assert(glyphs.size() == 95 * 7);
 
 /// The row `y` (0 to 6) of a character as five bits; '?' for what the font does not hold.

@@ -20,7 +20,7 @@ class Error : public std::runtime_error {
 /// All parts are optional: things made in code have no file.
 struct Origin {
     std::string file{};     ///< path as the user gave it
-    int line = 0;         ///< 1-based; 0 when unknown
+    int line = 0;           ///< 1-based; 0 when unknown
     std::string element{};  ///< for example `<shape type="obj">`
 
     /// "room.xml:12: <shape type="obj">: ", or as much of it as is known.

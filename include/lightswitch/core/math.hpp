@@ -78,7 +78,9 @@ struct Basis {
         bitangent = Vec3(b, sign + normal.y * normal.y * a, -normal.y);
     }
 
-    [[gnu::always_inline]] Vec3 to_local(const Vec3& v) const { return {dot(v, tangent), dot(v, bitangent), dot(v, normal)}; }
+    [[gnu::always_inline]] Vec3 to_local(const Vec3& v) const {
+        return {dot(v, tangent), dot(v, bitangent), dot(v, normal)};
+    }
     [[gnu::always_inline]] Vec3 to_world(const Vec3& v) const { return v.x * tangent + v.y * bitangent + v.z * normal; }
 };
 

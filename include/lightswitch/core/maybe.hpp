@@ -4,9 +4,9 @@
 
 namespace lightswitch {
 
-/// A value or nothing, for the inner loops: used like `std::optional`, but the value is always there as an object, if an idle one.
-/// Compilers keep its members in registers, which they do not with the union inside `std::optional` (GCC 12: a third of the time
-/// of path tracing outside of Embree).
+/// A value or nothing, for the inner loops: used like `std::optional`, but the value is always there as an object, if
+/// an idle one. Compilers keep its members in registers, which they do not with the union inside `std::optional` (GCC
+/// 12: a third of the time of path tracing outside of Embree).
 template <class T>
 class Maybe {
 public:

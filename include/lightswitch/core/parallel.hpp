@@ -27,8 +27,8 @@
 
 namespace lightswitch {
 
-/// Calls `unit(i)` once for every i in [0, n), in any order and on any threads, and returns when all are done. An exception
-/// from a unit is rethrown to the caller.
+/// Calls `unit(i)` once for every i in [0, n), in any order and on any threads, and returns when all are done. An
+/// exception from a unit is rethrown to the caller.
 template <class E>
 concept Executor = requires(const E& executor, std::size_t n, void (*unit)(std::size_t)) {
     executor.for_each(n, unit);
@@ -54,8 +54,8 @@ inline int own_threads() {
     return count;
 }
 
-/// How many threads, of at most `wanted`, the system lets this process start now: by starting them. They have ended when it
-/// returns.
+/// How many threads, of at most `wanted`, the system lets this process start now: by starting them. They have ended
+/// when it returns.
 inline int startable_threads(int wanted) {
     const int before = own_threads();
     std::atomic<bool> counted = false;
@@ -83,7 +83,8 @@ inline int allow_threads(int wanted) {
         int assured = 1;
         std::unique_ptr<tbb::global_control> limit;
     };
-    static Supply& supply = *new Supply;  // never destroyed: without the limit oneTBB would start threads at the very end
+    static Supply& supply =
+        *new Supply;  // never destroyed: without the limit oneTBB would start threads at the very end
     constexpr int spare = 1;
     const std::lock_guard lock(supply.mutex);
     if (wanted > supply.assured && !supply.limit) {
@@ -97,8 +98,8 @@ inline int allow_threads(int wanted) {
 
 }  // namespace detail
 
-/// oneTBB with a given number of threads (0: as many as the machine has). May be more than the machine has; fewer are used
-/// where the system does not let the process start so many.
+/// oneTBB with a given number of threads (0: as many as the machine has). May be more than the machine has; fewer are
+/// used where the system does not let the process start so many.
 class TbbExecutor {
 public:
     explicit TbbExecutor(int threads = 0) {
@@ -113,7 +114,8 @@ public:
 
     void for_each(std::size_t n, const auto& unit) const {
         arena_->execute([&] {
-            tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) { unit(i); }, tbb::simple_partitioner{});
+            tbb::parallel_for(
+                std::size_t{0}, n, [&](std::size_t i) { unit(i); }, tbb::simple_partitioner{});
         });
     }
     int threads() const { return arena_->max_concurrency(); }

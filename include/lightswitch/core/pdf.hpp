@@ -23,8 +23,8 @@ struct AreaPdf {
     friend auto operator<=>(const AreaPdf&, const AreaPdf&) = default;
 };
 
-/// Density of light that leaves a surface, with respect to its area and to solid angle, in 1 / (render unit)^2 / sr. A Dirac
-/// distribution over place or direction is left out of it.
+/// Density of light that leaves a surface, with respect to its area and to solid angle, in 1 / (render unit)^2 / sr. A
+/// Dirac distribution over place or direction is left out of it.
 struct EmissionPdf {
     float value = 0;
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// Random and quasi-random numbers as pure functions of (seed, iteration, stream, index, dimension): no state is shared, so
-// results do not depend on threads or on the order of work.
+// Random and quasi-random numbers as pure functions of (seed, iteration, stream, index, dimension): no state is shared,
+// so results do not depend on threads or on the order of work.
 
 #include <lightswitch/core/math.hpp>
 
@@ -34,17 +34,17 @@ constexpr std::uint32_t reverse_bits(std::uint32_t x) {
     return ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
 }
 
-/// One step of the generator wyrand (Wang Yi, 2019): the two halves of a product, folded. One multiplication for 64 bits that
-/// pass the usual batteries of tests.
+/// One step of the generator wyrand (Wang Yi, 2019): the two halves of a product, folded. One multiplication for 64
+/// bits that pass the usual batteries of tests.
 constexpr std::uint64_t fold_multiply(std::uint64_t x) {
     __extension__ using Wide = unsigned __int128;
     const Wide product = static_cast<Wide>(x) * (x ^ 0xe7037ed1a0b428dbu);
     return static_cast<std::uint64_t>(product) ^ static_cast<std::uint64_t>(product >> 64);
 }
 
-/// Owen's nested uniform scrambling of a fraction whose bits are given in reversed order; different seeds give independent
-/// scramblings. The hash is the one of Laine and Karras (2011) with the constants that Vegdahl found ("Building a Better
-/// LK Hash", 2021); it works because multiplication and addition carry only towards higher bits.
+/// Owen's nested uniform scrambling of a fraction whose bits are given in reversed order; different seeds give
+/// independent scramblings. The hash is the one of Laine and Karras (2011) with the constants that Vegdahl found
+/// ("Building a Better LK Hash", 2021); it works because multiplication and addition carry only towards higher bits.
 constexpr std::uint32_t owen_scramble_reversed(std::uint32_t x, std::uint32_t seed) {
     x ^= x * 0x3d20adeau;
     x += seed;
@@ -69,10 +69,11 @@ inline float to_unit_float(std::uint32_t x) { return static_cast<float>(x >> 8) 
 
 /// The part of the sample points that all streams of one iteration share.
 ///
-/// Dimensions come in pairs. Each pair is a (0,2)-sequence of its own: Sobol' points, shuffled and Owen-scrambled with the seed and
-/// the number of the pair (Burley, "Practical Hash-based Owen Scrambling", JCGT 2020). Every stream then moves them by a random
-/// digital shift of its own (an exclusive or, per dimension). The numbers of one pixel are so stratified over 2^k iterations, in
-/// each pair; single numbers are uniform and different pixels uncorrelated, because the shifts are independent.
+/// Dimensions come in pairs. Each pair is a (0,2)-sequence of its own: Sobol' points, shuffled and Owen-scrambled with
+/// the seed and the number of the pair (Burley, "Practical Hash-based Owen Scrambling", JCGT 2020). Every stream then
+/// moves them by a random digital shift of its own (an exclusive or, per dimension). The numbers of one pixel are so
+/// stratified over 2^k iterations, in each pair; single numbers are uniform and different pixels uncorrelated, because
+/// the shifts are independent.
 class IterationPoints {
 public:
     static constexpr std::uint32_t sobol_pairs = 64;  ///< beyond this many pairs points are independent
@@ -107,18 +108,20 @@ private:
     std::array<Point, sobol_pairs> points_{};
 };
 
-/// The numbers of one pixel sample or one light path. Cheap to make; refers to its `IterationPoints`, which must outlive it.
-/// Each call advances by one pair of dimensions, so the same sequence of calls gives the same numbers.
+/// The numbers of one pixel sample or one light path. Cheap to make; refers to its `IterationPoints`, which must
+/// outlive it. Each call advances by one pair of dimensions, so the same sequence of calls gives the same numbers.
 class Sampler {
 public:
     /// `stream` tells apart independent uses within an iteration (pixels, light paths), `index` the pixel or path.
     Sampler(const IterationPoints& points, std::uint32_t stream, std::uint64_t index)
-        : points_(&points), sobol_end_(points.pairs_),
+        : points_(&points),
+          sobol_end_(points.pairs_),
           key_(detail::mix64((points.pairs_ ? points.seed_ : points.iteration_) ^
                              ((index + 1) * 0x9e3779b97f4a7c15u + (std::uint64_t{stream} << 56)))) {}
 
-    /// A second sampler, whose numbers are independent of this one's however many are drawn from either: it takes the second half
-    /// of the Sobol' pairs that are left. For a method that draws two paths of unknown length for one sample.
+    /// A second sampler, whose numbers are independent of this one's however many are drawn from either: it takes the
+    /// second half of the Sobol' pairs that are left. For a method that draws two paths of unknown length for one
+    /// sample.
     Sampler split() {
         Sampler other = *this;
         other.key_ = detail::mix64(detail::fold_multiply(key_ + pair_++ * 0xa0761d6478bd642fu) ^ 0x8bb84b93962eacc9u);
@@ -138,8 +141,7 @@ public:
         IterationPoints::Point base{0, 0};
         if (pair < sobol_end_) [[likely]]
             base = points_->points_[pair];
-        else if (points_->pairs_ != 0)
-            bits = detail::mix64(bits ^ points_->iteration_);
+        else if (points_->pairs_ != 0) bits = detail::mix64(bits ^ points_->iteration_);
         return {detail::to_unit_float(base.x ^ static_cast<std::uint32_t>(bits)),
                 detail::to_unit_float(base.y ^ static_cast<std::uint32_t>(bits >> 32))};
     }
@@ -151,7 +153,8 @@ private:
     std::uint64_t key_;
 };
 
-/// Random numbers one after the other, as many as one likes: for decisions that are not worth a dimension of a `Sampler`.
+/// Random numbers one after the other, as many as one likes: for decisions that are not worth a dimension of a
+/// `Sampler`.
 class RandomSequence {
 public:
     /// A function of the seed alone.
@@ -163,7 +166,9 @@ public:
     /// Uniform in [0, 1), in steps of 2^-53.
     [[gnu::always_inline]] double next() { return double(next_bits() >> 11) * 0x1p-53; }
     /// The same as a float, in steps of 2^-24.
-    [[gnu::always_inline]] float next_float() { return detail::to_unit_float(static_cast<std::uint32_t>(next_bits() >> 32)); }
+    [[gnu::always_inline]] float next_float() {
+        return detail::to_unit_float(static_cast<std::uint32_t>(next_bits() >> 32));
+    }
 
 private:
     [[gnu::always_inline]] std::uint64_t next_bits() {

@@ -12,10 +12,11 @@ namespace lightswitch {
 
 /// Chooses an index with probability proportional to its weight, in constant expected time.
 ///
-/// Inverts the cumulative distribution with a guide table (Chen and Asau 1974): unlike an alias table the map from `u` to the
-/// index is monotone, which keeps the stratification of the sample points. Probabilities are rounded to whole multiples of
-/// 2^-24, the steps of the sampler's numbers, and to no less than one step for a positive weight: what `probability` says is
-/// exactly what happens, so that values divided by it are unbiased. Immutable: safe to use from several threads.
+/// Inverts the cumulative distribution with a guide table (Chen and Asau 1974): unlike an alias table the map from `u`
+/// to the index is monotone, which keeps the stratification of the sample points. Probabilities are rounded to whole
+/// multiples of 2^-24, the steps of the sampler's numbers, and to no less than one step for a positive weight: what
+/// `probability` says is exactly what happens, so that values divided by it are unbiased. Immutable: safe to use from
+/// several threads.
 class DiscreteDistribution {
 public:
     DiscreteDistribution() = default;

@@ -4,8 +4,9 @@
 
 #include <lightswitch/core/error.hpp>
 #include <lightswitch/core/parallel.hpp>
+#include <lightswitch/core/ray_count.hpp>
 #include <lightswitch/embree/api.hpp>
-#include <lightswitch/scene/ray.hpp>
+#include <lightswitch/geometry/ray.hpp>
 
 #if defined(__SSE2__)
 #include <xmmintrin.h>
@@ -26,20 +27,12 @@
 
 namespace lightswitch::embree {
 
-/// Numbers of rays traced by the calling thread since it started; read them before and after, and subtract.
-struct RayCount {
-    std::uint64_t intersect = 0;
-    std::uint64_t occluded = 0;
-    std::uint64_t refused = 0;  ///< among both, see `Accelerator`
-};
-inline constinit thread_local RayCount ray_count{};
-
-/// An Embree device. Errors that Embree reports are kept and thrown as `Error` by `check`, never out of Embree's callback.
-/// Safe to share between threads.
+/// An Embree device. Errors that Embree reports are kept and thrown as `Error` by `check`, never out of Embree's
+/// callback. Safe to share between threads.
 class Device {
 public:
-    /// `config` is Embree's own string, for example "threads=2,verbose=1,isa=avx2"; empty for the defaults. Throws `Error` when
-    /// Embree cannot read it; keys that Embree does not know it ignores.
+    /// `config` is Embree's own string, for example "threads=2,verbose=1,isa=avx2"; empty for the defaults. Throws
+    /// `Error` when Embree cannot read it; keys that Embree does not know it ignores.
     explicit Device(const std::string& config = "") : state_(std::make_unique<State>()) {
         lightswitch::detail::allow_threads(tbb::info::default_concurrency());  // Embree builds by oneTBB
         device_.reset(rtcNewDevice(config.empty() ? nullptr : config.c_str()));
@@ -73,8 +66,8 @@ private:
             auto& state = *static_cast<State*>(self);
             const std::lock_guard lock(state.mutex);
             if (state.message.empty())
-                state.message = (text ? text : "no text") + std::string(" (error ") +
-                                std::to_string(static_cast<int>(code)) + ")";
+                state.message =
+                    (text ? text : "no text") + std::string(" (error ") + std::to_string(static_cast<int>(code)) + ")";
         }
         static bool on_memory(void* self, ssize_t bytes, bool) {
             static_cast<State*>(self)->memory += bytes;
@@ -97,12 +90,12 @@ struct Hit {
     Vec3 normal;              ///< of a triangle, on the side from which its corners run counter-clockwise; any length
 };
 
-/// An Embree scene: geometries are added, then it is committed, and then it is immutable and rays may be traced from any number of
-/// threads.
+/// An Embree scene: geometries are added, then it is committed, and then it is immutable and rays may be traced from
+/// any number of threads.
 ///
-/// Embree answers a ray that is not finite with anything from a wrong hit to the end of the process, so it is not asked: such a ray
-/// meets nothing, and is counted. So is one with coordinates beyond `largest_coordinate`, and one whose direction is 0. A `near`
-/// below 0 counts as 0.
+/// Embree answers a ray that is not finite with anything from a wrong hit to the end of the process, so it is not
+/// asked: such a ray meets nothing, and is counted. So is one with coordinates beyond `largest_coordinate`, and one
+/// whose direction is 0. A `near` below 0 counts as 0.
 class Accelerator {
 public:
     struct SphereData {
@@ -151,8 +144,8 @@ public:
         query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
         ++ray_count.intersect;
         embree::intersect(scene_.get(), query);
-        hit = {query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar,
-               Vec3(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z)};
+        hit = {query.hit.geomID, query.hit.primID, query.hit.u,
+               query.hit.v,      query.ray.tfar,   Vec3(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z)};
         return hit.geometry != RTC_INVALID_GEOMETRY_ID || missed(query.ray);
     }
 
@@ -180,8 +173,7 @@ private:
 
     template <class T>
     void fill(const Geometry& geometry, RTCBufferType type, RTCFormat format, std::span<const T> data) {
-        void* const buffer =
-            rtcSetNewGeometryBuffer(geometry.get(), type, 0, format, sizeof(T), data.size());
+        void* const buffer = rtcSetNewGeometryBuffer(geometry.get(), type, 0, format, sizeof(T), data.size());
         device_.check("allocating a buffer of " + std::to_string(data.size()) + " elements");
         if (!buffer) throw Error("Embree gave no memory for a buffer of " + std::to_string(data.size()) + " elements");
         std::copy(data.begin(), data.end(), static_cast<T*>(buffer));
@@ -199,7 +191,8 @@ private:
     using Four [[gnu::vector_size(16)]] = float;
     using FourBits [[gnu::vector_size(16)]] = std::int32_t;
 
-    /// Writes origin and direction as whole vectors: Embree reads them so, and a read of four separate writes would stall.
+    /// Writes origin and direction as whole vectors: Embree reads them so, and a read of four separate writes would
+    /// stall.
     [[gnu::always_inline]] static void set(RTCRay& query, const Ray& ray) {
         const float near = std::max(ray.near, 0.0f);
         const Four origin{ray.origin.x, ray.origin.y, ray.origin.z, near};
@@ -215,16 +208,19 @@ private:
             disarm(query);
     }
 
-    /// Puts a ray that meets nothing in the place of one that Embree must not see, or that ends before it begins; only the former is
-    /// counted. A ray instead of an early return: a second way out would cost the inner loops more than the check.
+    /// Puts a ray that meets nothing in the place of one that Embree must not see, or that ends before it begins; only
+    /// the former is counted. A ray instead of an early return: a second way out would cost the inner loops more than
+    /// the check.
     [[gnu::noinline, gnu::cold]] static void disarm(RTCRay& query) {
-        const Four origin{query.org_x, query.org_y, query.org_z, 0}, direction{query.dir_x, query.dir_y, query.dir_z, 0};
+        const Four origin{query.org_x, query.org_y, query.org_z, 0},
+            direction{query.dir_x, query.dir_y, query.dir_z, 0};
         ray_count.refused += !(is_within_limits(origin, direction) && query.tfar < query.tnear);
         query.org_x = query.org_y = query.org_z = query.dir_x = query.dir_y = query.tfar = 0;
         query.dir_z = query.tnear = 1;
     }
 
-    /// False. Whether a ray has a direction at all is asked here, after Embree, where it costs those that hit something nothing.
+    /// False. Whether a ray has a direction at all is asked here, after Embree, where it costs those that hit something
+    /// nothing.
     [[gnu::always_inline]] static bool missed(const RTCRay& query) {
         if (query.dir_x == 0) [[unlikely]]
             ray_count.refused += query.dir_y == 0 && query.dir_z == 0;

@@ -2,7 +2,7 @@
 
 // Taking binary formats apart without ever reading past their end.
 
-#include <lightswitch/film/file.hpp>
+#include <lightswitch/core/file.hpp>
 #include <lightswitch/film/image.hpp>
 
 #include <bit>

@@ -17,8 +17,8 @@ struct Splat {
     Rgb value;
 };
 
-/// Accumulates iterations, each an estimate of the whole image made of slots (a pixel's own sample, written by one worker) and
-/// splats (contributions that land anywhere). Sums are in double and in a fixed order.
+/// Accumulates iterations, each an estimate of the whole image made of slots (a pixel's own sample, written by one
+/// worker) and splats (contributions that land anywhere). Sums are in double and in a fixed order.
 ///
 /// `slot` may be called from several threads for different pixels; everything else from one thread at a time.
 class Film {
@@ -76,8 +76,8 @@ public:
         return result;
     }
 
-    /// Estimated variance of each pixel of `image()`, from the spread of its iterations; 0 before the second. With Sobol'
-    /// points, whose samples repel each other, it is an upper estimate.
+    /// Estimated variance of each pixel of `image()`, from the spread of its iterations; 0 before the second. With
+    /// Sobol' points, whose samples repel each other, it is an upper estimate.
     Image variance() const {
         Image result(width_, height_);
         if (iterations_ > 1)
@@ -85,9 +85,9 @@ public:
         return result;
     }
 
-    /// Estimated root mean square error of the image, as a fraction of its mean: 0.01 means that a pixel is typically off by
-    /// 1 % of the average pixel. Infinite, which is to say unknown, before the second iteration and while the image is black:
-    /// that nothing was found yet says nothing about what is there.
+    /// Estimated root mean square error of the image, as a fraction of its mean: 0.01 means that a pixel is typically
+    /// off by 1 % of the average pixel. Infinite, which is to say unknown, before the second iteration and while the
+    /// image is black: that nothing was found yet says nothing about what is there.
     double relative_error() const {
         if (iterations_ < 2) return std::numeric_limits<double>::infinity();
         DVec3 mean(0), variance(0);

@@ -15,8 +15,8 @@ namespace lightswitch {
 
 /// A rectangle of linear RGB values, `width` x `height`, row by row from the top, left to right.
 ///
-/// Values are radiance (or what the method calls it); they may be negative in a difference image. Copyable; reading from
-/// several threads is safe.
+/// Values are radiance (or what the method calls it); they may be negative in a difference image. Copyable; reading
+/// from several threads is safe.
 class Image {
 public:
     /// What the image says about itself: method, scene, samples, seed, ... Written to EXR headers and read back.

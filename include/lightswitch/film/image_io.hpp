@@ -2,8 +2,8 @@
 
 // Images as files: .exr, .hdr, .pfm (linear) and .png (tone mapped).
 
+#include <lightswitch/core/file.hpp>
 #include <lightswitch/film/exr.hpp>
-#include <lightswitch/film/file.hpp>
 #include <lightswitch/film/pfm.hpp>
 #include <lightswitch/film/png.hpp>
 #include <lightswitch/film/rgbe.hpp>

@@ -70,7 +70,8 @@ inline std::string encode_rgbe(const Image& image) {
     std::string out = "#?RADIANCE\n";
     for (const auto& [key, value] : image.metadata) {
         std::string line = "# lightswitch:" + key + "=" + value;
-        std::replace_if(line.begin(), line.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+        std::replace_if(
+            line.begin(), line.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
         out += line + "\n";
     }
     out += "FORMAT=32-bit_rle_rgbe\n\n";

@@ -5,7 +5,7 @@
 #include <lightswitch/core/math.hpp>
 #include <lightswitch/core/pdf.hpp>
 #include <lightswitch/core/warp.hpp>
-#include <lightswitch/scene/surface_point.hpp>
+#include <lightswitch/geometry/surface_point.hpp>
 
 #include <concepts>
 
@@ -13,12 +13,12 @@ namespace lightswitch {
 
 /// A direction from which a light reaches a point.
 struct LightSample {
-    Vec3 wi{0, 0, 1};      ///< unit, from the point towards the light
-    Rgb radiance{0};       ///< what arrives if nothing is in between; for a Dirac light the irradiance at normal incidence
-    SolidAnglePdf pdf{};   ///< density of `wi`; for a Dirac light the probability of having chosen it
-    bool dirac = false;    ///< true when no other strategy can find the light: point and directional lights
-    Ray visibility;        ///< the ray that must be free
-    float spread = 0;      ///< as `EmittingLight` says; only if the light is one
+    Vec3 wi{0, 0, 1};  ///< unit, from the point towards the light
+    Rgb radiance{0};   ///< what arrives if nothing is in between; for a Dirac light the irradiance at normal incidence
+    SolidAnglePdf pdf{};  ///< density of `wi`; for a Dirac light the probability of having chosen it
+    bool dirac = false;   ///< true when no other strategy can find the light: point and directional lights
+    Ray visibility;       ///< the ray that must be free
+    float spread = 0;     ///< as `EmittingLight` says; only if the light is one
 };
 
 /// The start of a light path.
@@ -31,17 +31,18 @@ struct LightEmission {
     TypedIndex light{};  ///< which one; set by the scene
 };
 
-/// A parallel ray from infinitely far away, against the direction `towards` (unit): `place` in [0,1)^2 is mapped evenly to the
-/// disk that the scene's bounding sphere, of that radius around the origin, fills in that direction.
+/// A parallel ray from infinitely far away, against the direction `towards` (unit): `place` in [0,1)^2 is mapped evenly
+/// to the disk that the scene's bounding sphere, of that radius around the origin, fills in that direction.
 inline Ray ray_into_scene(const Vec3& towards, const Vec2& place, float scene_radius) {
     const Vec2 p = uniform_disk(place, scene_radius);
     const Basis basis(towards);
     // A little outside of the sphere, so that rounding does not cut off what touches it.
-    return {.origin = 1.001f * scene_radius * towards + p.x * basis.tangent + p.y * basis.bitangent, .direction = -towards};
+    return {.origin = 1.001f * scene_radius * towards + p.x * basis.tangent + p.y * basis.bitangent,
+            .direction = -towards};
 }
 
-/// A source of light in render space. `sample` may return black when the light cannot reach the point; the density in it is
-/// that of the light alone, without the probability of having chosen the light. Safe to use from several threads.
+/// A source of light in render space. `sample` may return black when the light cannot reach the point; the density in
+/// it is that of the light alone, without the probability of having chosen the light. Safe to use from several threads.
 ///
 /// - `infinite`: true when the light is beyond the scene and is met by rays that leave it;
 /// - `power()`: luminous weight by which the light is selected, proportional to the flux that it brings into the scene.
@@ -55,9 +56,12 @@ concept Light = requires(const L light, const SurfacePoint point, const Vec2 u) 
 /// A light at which paths can start, for methods that trace light.
 ///
 /// - `emit(place, direction)`: a ray, from two points in [0,1)^2;
-/// - `spread(at, wi, place)`: over what area, across their way, paths that start at `place` (on the light) are spread when they
-///   get to the point `at`, which sees that place in the direction `wi`: the density with which `sample` at `at` chooses the place,
-///   over the density with which `emit` does so and passes there. The square of the distance, times 4 pi, for a point light.
+/// - `spread(at, wi, place)`: over what area, across their way, paths that start at `place` (on the light) are spread
+/// when they
+///   get to the point `at`, which sees that place in the direction `wi`: the density with which `sample` at `at`
+///   chooses the place,
+///   over the density with which `emit` does so and passes there. The square of the distance, times 4 pi, for a point
+///   light.
 template <class L>
 concept EmittingLight = Light<L> && requires(const L light, const SurfacePoint point, const Vec3 v, const Vec2 u) {
     { light.emit(u, u) } -> std::same_as<LightEmission>;
@@ -65,17 +69,18 @@ concept EmittingLight = Light<L> && requires(const L light, const SurfacePoint p
 };
 
 /// A light with a surface, which rays can hit. `pdf(from, wi, hit)` is the density with which `sample` at the
-/// position `from` chooses the direction `wi` to the point `hit` on the light; `emitted` the radiance that leaves it. If paths
-/// can start there, `emission_pdf(cosine)` is the density of `emit` at that angle to the normal.
+/// position `from` chooses the direction `wi` to the point `hit` on the light; `emitted` the radiance that leaves it.
+/// If paths can start there, `emission_pdf(cosine)` is the density of `emit` at that angle to the normal.
 template <class L>
-concept AreaLight = Light<L> && requires(const L light, const SurfacePoint point, const Vec3 position, const Vec3 direction) {
+concept AreaLight = Light<L> &&
+    requires(const L light, const SurfacePoint point, const Vec3 position, const Vec3 direction) {
     { light.emitted(point, direction) } -> std::same_as<Rgb>;
     { light.pdf(position, direction, point) } -> std::same_as<SolidAnglePdf>;
 };
 
 /// A light that surrounds the scene. `radiance(wi)` arrives from the direction `wi`, which `sample`, at a
-/// point whose `facing_normal()` is `normal`, chooses with density `pdf(normal, wi)`. If paths can start there, `emission_pdf()`
-/// is the density of `emit`.
+/// point whose `facing_normal()` is `normal`, chooses with density `pdf(normal, wi)`. If paths can start there,
+/// `emission_pdf()` is the density of `emit`.
 template <class L>
 concept EnvironmentLight = Light<L> && requires(const L light, const Vec3 direction) {
     { light.radiance(direction) } -> std::same_as<Rgb>;

@@ -6,9 +6,9 @@ namespace lightswitch {
 
 /// An emitting sphere; its front (outside, or inside when `inward`) emits the same radiance in all directions.
 ///
-/// A sphere that shines outwards is sampled uniformly over the solid angle that it covers (Shirley, Wang, Zimmerman, "Monte
-/// Carlo Techniques for Direct Lighting Calculations", 1996); one that shines inwards by area, which also serves points on
-/// the sphere itself, for which inside and outside are a matter of rounding.
+/// A sphere that shines outwards is sampled uniformly over the solid angle that it covers (Shirley, Wang, Zimmerman,
+/// "Monte Carlo Techniques for Direct Lighting Calculations", 1996); one that shines inwards by area, which also serves
+/// points on the sphere itself, for which inside and outside are a matter of rounding.
 struct SphereLight {
     static constexpr bool infinite = false;
 
@@ -34,13 +34,13 @@ struct SphereLight {
         const Vec3 local = uniform_cone(u, one_minus_cosine);
         const Basis basis(to_center / distance);
         const Vec3 wi = basis.to_world(local);
-        // The near intersection of the direction with the sphere, from the angle alone and relative to the centre: no digits
-        // cancel, however small and far the sphere is.
+        // The near intersection of the direction with the sphere, from the angle alone and relative to the centre: no
+        // digits cancel, however small and far the sphere is.
         const float sine2 = square(local.x) + square(local.y);
         const float half_chord = safe_sqrt(square(radius) - distance2 * sine2);
         const float reach = distance * local.z - half_chord;
-        const Vec3 normal = normalize(
-            basis.to_world({reach * local.x, reach * local.y, -(distance * sine2 + local.z * half_chord)}));
+        const Vec3 normal =
+            normalize(basis.to_world({reach * local.x, reach * local.y, -(distance * sine2 + local.z * half_chord)}));
         return {.wi = wi,
                 .radiance = emission,
                 .pdf = uniform_cone_pdf(one_minus_cosine),
@@ -58,10 +58,11 @@ struct SphereLight {
     LightEmission emit(const Vec2& place, const Vec2& direction) const {
         const Vec3 outward = uniform_sphere(place), normal = inward ? -outward : outward;
         const Vec3 local = cosine_hemisphere(direction);
-        return {.ray = {.origin = center + radius * outward + offset * normal, .direction = Basis(normal).to_world(local)},
-                .weight = emission * (pi / area_pdf().value),
-                .pdf = emission_pdf(local.z),
-                .cosine = local.z};
+        return {
+            .ray = {.origin = center + radius * outward + offset * normal, .direction = Basis(normal).to_world(local)},
+            .weight = emission * (pi / area_pdf().value),
+            .pdf = emission_pdf(local.z),
+            .cosine = local.z};
     }
     EmissionPdf emission_pdf(float cosine) const { return area_pdf() * cosine_hemisphere_pdf(cosine); }
     float spread(const SurfacePoint& at, const Vec3& wi, const Vec3& place) const {

@@ -12,7 +12,7 @@ struct TriangleLight {
     Vec3 normal;  ///< unit, on the emitting side
     Rgb emission;
     AreaPdf density;  ///< one over the area
-    float offset;  ///< as in `SurfacePoint`
+    float offset;     ///< as in `SurfacePoint`
 
     double power() const { return double(luminance(emission)) * double(pi) / double(density.value); }
 

@@ -2,7 +2,7 @@
 
 // Wavefront OBJ: triangles and polygons with optional vertex normals.
 
-#include <lightswitch/film/file.hpp>
+#include <lightswitch/core/file.hpp>
 #include <lightswitch/load/mesh_file.hpp>
 #include <lightswitch/load/polygon.hpp>
 #include <lightswitch/load/text.hpp>

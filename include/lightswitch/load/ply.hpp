@@ -2,7 +2,7 @@
 
 // PLY: triangles and polygons with optional vertex normals, ASCII or binary.
 
-#include <lightswitch/film/file.hpp>
+#include <lightswitch/core/file.hpp>
 #include <lightswitch/load/mesh_file.hpp>
 #include <lightswitch/load/ply_header.hpp>
 #include <lightswitch/load/polygon.hpp>

@@ -1,9 +1,9 @@
 #pragma once
 
-// A scene file's XML tree, with what Mitsuba adds to XML: `<default>` values and `$name`, ids and `<alias>`. The only header that
-// includes pugixml.
+// A scene file's XML tree, with what Mitsuba adds to XML: `<default>` values and `$name`, ids and `<alias>`. The only
+// header that includes pugixml.
 
-#include <lightswitch/film/file.hpp>
+#include <lightswitch/core/file.hpp>
 #include <lightswitch/load/text.hpp>
 
 #include <pugixml.hpp>

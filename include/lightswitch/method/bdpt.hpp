@@ -16,8 +16,9 @@ struct Strategy {
     bool weighted = true;     ///< by multiple importance sampling; otherwise as if there were no other strategy
 };
 
-/// Bidirectional path tracing (Lafortune and Willems 1993; Veach 1997, chapter 10): for every pixel a path from the camera and one
-/// from a light, and all ways to join them, weighed by the power heuristic. Light paths that the camera sees are splatted to the film.
+/// Bidirectional path tracing (Lafortune and Willems 1993; Veach 1997, chapter 10): for every pixel a path from the
+/// camera and one from a light, and all ways to join them, weighed by the power heuristic. Light paths that the camera
+/// sees are splatted to the film.
 struct Bdpt {
     static constexpr std::string_view name = "bdpt";
     static constexpr Kind kind = Kind::unbiased;
@@ -26,8 +27,9 @@ struct Bdpt {
 
     int max_depth = PathLength{}.max_depth;  ///< see `PathLength`
     int rr_depth = PathLength{}.rr_depth;    ///< of whole paths: each of the two that make one counts half as many
-    std::optional<Strategy> only = {};  ///< this strategy alone; the weighted images of all strategies add up to the image
-    PathClasses left_out = {};          ///< paths that are not made
+    std::optional<Strategy> only =
+        {};                     ///< this strategy alone; the weighted images of all strategies add up to the image
+    PathClasses left_out = {};  ///< paths that are not made
 
     struct State {};
     State start(auto&) const { return {}; }
@@ -37,7 +39,9 @@ struct Bdpt {
         const auto& scene = frame.scene();
         const PathLimits limits{{max_depth, rr_depth / 2}, left_out};
         const double light_paths = double(frame.area());
-        const auto count = [this](const Contribution& contribution, int s, int t) { return counted(contribution, s, t); };
+        const auto count = [this](const Contribution& contribution, int s, int t) {
+            return counted(contribution, s, t);
+        };
         frame.pixels([&](const Ray& ray, auto& sampler, const PixelContext& pixel) {
             static thread_local std::vector<PathVertex> light_path;  // kept, so that it need not be allocated again
             light_path.clear();

@@ -7,14 +7,16 @@
 
 namespace lightswitch {
 
-/// A rough idea of how bright the parts of an image are, by tiles. Chains that divide by it visit dark parts as often as bright ones,
-/// so that noise is in proportion to the image and not to its brightest parts (Veach 1997, section 11.3.2). Any guide is right; a good
-/// one is quiet.
+/// A rough idea of how bright the parts of an image are, by tiles. Chains that divide by it visit dark parts as often
+/// as bright ones, so that noise is in proportion to the image and not to its brightest parts (Veach 1997, section
+/// 11.3.2). Any guide is right; a good one is quiet.
 class BrightnessGuide {
 public:
     /// For a film of `width` x `height` pixels; even until it learns.
     BrightnessGuide(int width = 1, int height = 1)
-        : columns_((width + tile - 1) / tile), rows_((height + tile - 1) / tile), tiles_(std::size_t(columns_ * rows_), 1.0f) {}
+        : columns_((width + tile - 1) / tile),
+          rows_((height + tile - 1) / tile),
+          tiles_(std::size_t(columns_ * rows_), 1.0f) {}
 
     /// From `samples`, of which each has brightness `target` at `pixel`, drawn evenly over the film.
     void learn(const auto& samples) {
@@ -25,7 +27,8 @@ public:
         // A few samples outshine all others and say little about their tile.
         for (const auto& s : samples) sums[index(s.pixel)] += std::min(s.target / mean, brightest);
         const double share = double(tiles_.size()) / double(samples.size());
-        for (std::size_t i = 0; i < tiles_.size(); ++i) tiles_[i] = static_cast<float>(floor + share * smoothed(sums, i));
+        for (std::size_t i = 0; i < tiles_.size(); ++i)
+            tiles_[i] = static_cast<float>(floor + share * smoothed(sums, i));
     }
 
     /// What to divide by at a pixel: around 1 on the average, and never near 0.

@@ -1,7 +1,7 @@
 #pragma once
 
-// The ways in which a path from the camera and one from a light become a whole path: strategies, in Veach's words (s, t) with s
-// vertices from the light and t from the camera.
+// The ways in which a path from the camera and one from a light become a whole path: strategies, in Veach's words (s,
+// t) with s vertices from the light and t from the camera.
 
 #include <lightswitch/core/sampler.hpp>
 #include <lightswitch/method/subpath.hpp>
@@ -57,7 +57,8 @@ inline Contribution meet_environment(const auto& scene, const CameraSubpath& pat
 
 /// s = 1: a point of a light, chosen from the vertex of the camera path (next event estimation).
 [[gnu::always_inline]] inline Connection connect_to_light(const auto& scene, const PathVertex& z, const Arrival& at_z,
-                                                          float choice, const Vec2& place, const MergeWeights& merge_weights,
+                                                          float choice, const Vec2& place,
+                                                          const MergeWeights& merge_weights,
                                                           const PathClasses& left_out = {}) {
     const LightSample light = scene.sample_light(z.point, choice, place);
     if (!(light.pdf.value > 0) || (light.dirac && left_out.dirac_light)) return {};
@@ -65,15 +66,17 @@ inline Contribution meet_environment(const auto& scene, const CameraSubpath& pat
     if (is_black(at_camera.value)) return {};
     const double cosine = std::abs(dot(z.point.normal, light.wi));
     const double fewer = light.dirac ? 0 : heuristic(double(at_camera.pdf.value) / double(light.pdf.value));
-    const double more = heuristic(cosine / double(light.spread)) *
-                        (merge_weights.merge + z.weights.last + z.weights.connections * heuristic(at_camera.reverse_pdf.value));
+    const double more =
+        heuristic(cosine / double(light.spread)) *
+        (merge_weights.merge + z.weights.last + z.weights.connections * heuristic(at_camera.reverse_pdf.value));
     return {{z.throughput * at_camera.value * (light.radiance / light.pdf.value), strategy_weight(fewer, more)},
             light.visibility};
 }
 
 /// t = 1: the vertex of a light path, seen by the camera. `view` must be what the camera says of it.
-[[gnu::always_inline]] inline Connection connect_to_camera(const auto& scene, const PathVertex& y, const Camera::View& view,
-                                                           double light_paths, const MergeWeights& merge_weights) {
+[[gnu::always_inline]] inline Connection connect_to_camera(const auto& scene, const PathVertex& y,
+                                                           const Camera::View& view, double light_paths,
+                                                           const MergeWeights& merge_weights) {
     const Turn at_light = turn<Transport::importance>(scene, y.point, Arrival(y.point), view.wi);
     if (is_black(at_light.value)) return {};
     const double cosine = std::abs(dot(y.point.normal, view.wi));
@@ -121,8 +124,8 @@ inline bool visible(const auto& scene, const Connection& connection) {
     return !is_black(connection.value) && connection.weight > 0 && !scene.occluded(connection.visibility);
 }
 
-/// Traces a path from a light and splats what the camera sees of it: `splatter` gets `count(contribution, s, t)`. Calls `visit(vertex)`
-/// at each vertex to which a camera path can connect.
+/// Traces a path from a light and splats what the camera sees of it: `splatter` gets `count(contribution, s, t)`. Calls
+/// `visit(vertex)` at each vertex to which a camera path can connect.
 void splat_light_subpath(const auto& scene, auto& sampler, auto& splatter, const PathLimits& limits, double light_paths,
                          const MergeWeights& merge_weights, const auto& count, const auto& visit) {
     const Camera& camera = scene.camera();
@@ -135,14 +138,15 @@ void splat_light_subpath(const auto& scene, auto& sampler, auto& splatter, const
     });
 }
 
-/// Traces the path from the camera that `ray` starts, and returns the sum of `count(contribution, s, t)` over all ways to join it
-/// with the lights and with the vertices of `light_path`, and of `at_vertex(z, arrival)` at each vertex where something can be joined.
+/// Traces the path from the camera that `ray` starts, and returns the sum of `count(contribution, s, t)` over all ways
+/// to join it with the lights and with the vertices of `light_path`, and of `at_vertex(z, arrival)` at each vertex
+/// where something can be joined.
 ///
 /// Most connections carry little. Whether one is worth its ray is left to Russian roulette: one that would add 1 % to
 /// what the path has gathered is traced with probability 0.1, and counts ten times.
 Rgb gather_camera_subpath(const auto& scene, const Ray& ray, auto& sampler, std::span<const PathVertex> light_path,
-                          const PathLimits& limits, double light_paths, const MergeWeights& merge_weights, const auto& count,
-                          const auto& at_vertex) {
+                          const PathLimits& limits, double light_paths, const MergeWeights& merge_weights,
+                          const auto& count, const auto& at_vertex) {
     constexpr float worth = 0.1f;
     Rgb sum(0);
     float gathered = 0;

@@ -7,10 +7,12 @@
 
 namespace lightswitch {
 
-/// A choice of path lengths from 2 segments on, up to a limit or without end: a table for the short ones, and a geometric tail.
+/// A choice of path lengths from 2 segments on, up to a limit or without end: a table for the short ones, and a
+/// geometric tail.
 class DepthChoice {
 public:
-    /// Before anything is known: each length three quarters as often as the one before. `max_depth` (at least 2) is as in `PathLength`.
+    /// Before anything is known: each length three quarters as often as the one before. `max_depth` (at least 2) is as
+    /// in `PathLength`.
     explicit DepthChoice(int max_depth = 2) : max_depth_(max_depth) {
         weights_.resize(static_cast<std::size_t>(max_depth < 0 ? table_size : std::min(table_size, max_depth - 1)));
         double weight = 1;
@@ -22,17 +24,15 @@ public:
         normalize();
     }
 
-    /// Half as before, half in proportion to `power[i]`, which lengths of i segments were found to carry; those beyond the table
-    /// count to the tail.
+    /// Half as before, half in proportion to `power[i]`, which lengths of i segments were found to carry; those beyond
+    /// the table count to the tail.
     void learn(const std::vector<double>& power) {
         double sum = 0;
         for (const double p : power) sum += p;
         if (!(sum > 0)) return;
         for (std::size_t depth = 2; depth < power.size(); ++depth) {
-            if (depth - 2 < weights_.size())
-                weights_[depth - 2] += power[depth] / sum;
-            else if (!bounded_by_table())
-                tail_ += power[depth] / sum;
+            if (depth - 2 < weights_.size()) weights_[depth - 2] += power[depth] / sum;
+            else if (!bounded_by_table()) tail_ += power[depth] / sum;
         }
         normalize();
     }

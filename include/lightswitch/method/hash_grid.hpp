@@ -31,7 +31,7 @@ namespace lightswitch {
 ///
 /// Memory: at most 8 bytes per item besides the items, and while building once more the size of the items.
 template <class Item>
-    requires std::is_trivially_copyable_v<Item> && std::default_initializable<Item>
+requires std::is_trivially_copyable_v<Item> && std::default_initializable<Item>
 class HashGrid {
 public:
     /// Replaces the contents by `items`, for queries of `radius` (in the units of the positions).

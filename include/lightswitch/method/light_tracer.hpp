@@ -6,9 +6,10 @@
 
 namespace lightswitch {
 
-/// Light tracing (Arvo 1986; particle tracing): paths start at the lights, one for every pixel of the film, and each of their vertices
-/// is splatted to the pixel that sees it. Lights themselves are seen by a ray through each pixel. Sharp caustics are its strength;
-/// what is seen in a mirror or through glass stays black, because no light path meets the camera by chance.
+/// Light tracing (Arvo 1986; particle tracing): paths start at the lights, one for every pixel of the film, and each of
+/// their vertices is splatted to the pixel that sees it. Lights themselves are seen by a ray through each pixel. Sharp
+/// caustics are its strength; what is seen in a mirror or through glass stays black, because no light path meets the
+/// camera by chance.
 struct LightTracer {
     static constexpr std::string_view name = "light";
     static constexpr Kind kind = Kind::unbiased;

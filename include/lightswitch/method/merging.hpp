@@ -24,7 +24,8 @@ inline Photon photon_at(const PathVertex& y) {
     return {y.point.position, y.point.wo, y.throughput * (cosine / true_cosine), y.edges};
 }
 
-/// The BSDF between the light that a photon brought and the direction that the camera path came from, with its densities.
+/// The BSDF between the light that a photon brought and the direction that the camera path came from, with its
+/// densities.
 [[gnu::always_inline]] inline Turn photon_turn(const auto& scene, const SurfacePoint& at, const Arrival& arrival,
                                                const Photon& photon) {
     Turn result = turn<Transport::radiance>(scene, at, arrival, photon.from);
@@ -34,17 +35,20 @@ inline Photon photon_at(const PathVertex& y) {
     return result;
 }
 
-/// A photon that also knows what its path counts against other strategies. A copy of what merging needs of a `PathVertex`, so that all
-/// of it is in one place of memory.
+/// A photon that also knows what its path counts against other strategies. A copy of what merging needs of a
+/// `PathVertex`, so that all of it is in one place of memory.
 struct WeighedPhoton : Photon {
     double last, merges;  ///< as in `PartialWeights`
 };
 
-/// The radius within which light is gathered, one for the whole image. It shrinks from iteration to iteration, slowly enough that
-/// noise vanishes and fast enough that bias does (Knaus and Zwicker, "Progressive Photon Mapping: A Probabilistic Approach", 2011).
+/// The radius within which light is gathered, one for the whole image. It shrinks from iteration to iteration, slowly
+/// enough that noise vanishes and fast enough that bias does (Knaus and Zwicker, "Progressive Photon Mapping: A
+/// Probabilistic Approach", 2011).
 struct MergeRadius {
-    float pixels = 1;       ///< of the first iteration, in widths of a pixel where the camera sees the scene (median over the image)
-    float alpha = 2 / 3.f;  ///< in (0, 1): the area falls as iterations^(alpha - 1), so bias does, and the variance as iterations^-alpha
+    /// Of the first iteration, in widths of a pixel where the camera sees the scene (median over the image).
+    float pixels = 1;
+    /// In (0, 1): the area falls as iterations^(alpha - 1), so bias does, and the variance as iterations^-alpha.
+    float alpha = 2 / 3.f;
 
     /// In render space. `footprint` is as from `pixel_footprint`.
     float at(std::uint64_t iteration, double footprint) const {
@@ -52,8 +56,8 @@ struct MergeRadius {
     }
 };
 
-/// The width of a pixel where the camera sees the scene, in render space: the median over a grid of rays. If they meet nothing, what
-/// a pixel would be that had the scene's size as its share.
+/// The width of a pixel where the camera sees the scene, in render space: the median over a grid of rays. If they meet
+/// nothing, what a pixel would be that had the scene's size as its share.
 double pixel_footprint(const auto& scene) {
     constexpr int side = 64;
     const Camera& camera = scene.camera();
@@ -77,9 +81,10 @@ inline MergeWeights merge_weights(double light_paths, double radius) {
     return {.merges = merges, .merge = heuristic(merges), .connect = heuristic(1 / merges)};
 }
 
-/// The photon `y`, taken as if it had arrived at the vertex `z` of a camera path; to be summed over all within the radius.
-[[gnu::always_inline]] inline Contribution merge(const auto& scene, const WeighedPhoton& y, const PathVertex& z, const Arrival& at_z,
-                                                 const MergeWeights& weights) {
+/// The photon `y`, taken as if it had arrived at the vertex `z` of a camera path; to be summed over all within the
+/// radius.
+[[gnu::always_inline]] inline Contribution merge(const auto& scene, const WeighedPhoton& y, const PathVertex& z,
+                                                 const Arrival& at_z, const MergeWeights& weights) {
     const Turn at = photon_turn(scene, z.point, at_z, y);
     if (is_black(at.value)) return {};
     const double fewer = y.last * weights.connect + y.merges * heuristic(at.pdf.value);

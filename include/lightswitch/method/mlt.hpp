@@ -13,15 +13,17 @@
 
 namespace lightswitch {
 
-/// Metropolis light transport in primary sample space (Kelemen et al. 2002), multiplexed (Hachisuka, Kaplanyan, Dachsbacher,
-/// "Multiplexed Metropolis Light Transport", 2014): Markov chains walk through the random numbers of a bidirectional path tracer and
-/// stay where the image gets its light from. A state holds one path of one length, made by one strategy (s, t), which is a coordinate
-/// like any other. Lights that are seen directly are left to a ray per pixel.
+/// Metropolis light transport in primary sample space (Kelemen et al. 2002), multiplexed (Hachisuka, Kaplanyan,
+/// Dachsbacher, "Multiplexed Metropolis Light Transport", 2014): Markov chains walk through the random numbers of a
+/// bidirectional path tracer and stay where the image gets its light from. A state holds one path of one length, made
+/// by one strategy (s, t), which is a coordinate like any other. Lights that are seen directly are left to a ray per
+/// pixel.
 ///
-/// An iteration is about one mutation per pixel. Chains start from independent paths chosen in proportion to what they carry, so no
-/// step has to be thrown away (Veach 1997, section 11.3.1), and the image's brightness is the mean over those paths and all large
-/// steps before the iteration. With `refine` false it is the mean over the first ones alone: then every iteration is unbiased, whereas
-/// refining adds a bias of about the relative variance of that mean, which fades as chains forget where they began.
+/// An iteration is about one mutation per pixel. Chains start from independent paths chosen in proportion to what they
+/// carry, so no step has to be thrown away (Veach 1997, section 11.3.1), and the image's brightness is the mean over
+/// those paths and all large steps before the iteration. With `refine` false it is the mean over the first ones alone:
+/// then every iteration is unbiased, whereas refining adds a bias of about the relative variance of that mean, which
+/// fades as chains forget where they began.
 struct Mlt {
     static constexpr std::string_view name = "mlt";
     static constexpr Kind kind = Kind::unbiased;
@@ -36,7 +38,7 @@ struct Mlt {
     /// A path and where the camera sees it.
     struct Sample {
         Vec2 pixel{0};
-        Rgb value{0};      ///< over its density: its mean over primary sample space is the sum over the pixels
+        Rgb value{0};       ///< over its density: its mean over primary sample space is the sum over the pixels
         double target = 0;  ///< what the chain's density is proportional to
     };
 
@@ -44,8 +46,10 @@ struct Mlt {
     public:
         std::vector<std::pair<std::string, double>> statistics() const {
             const double n = std::max(double(steps), 1.0);
-            return {{"chains", double(chains.size())}, {"mutations", double(steps)},
-                    {"acceptance_rate", double(accepted) / n}, {"large_step_rate", double(large) / n},
+            return {{"chains", double(chains.size())},
+                    {"mutations", double(steps)},
+                    {"acceptance_rate", double(accepted) / n},
+                    {"large_step_rate", double(large) / n},
                     {"normalization", normalization()}};
         }
 
@@ -88,7 +92,8 @@ struct Mlt {
         for (const Seed& seed : seeds) state.sum += seed.target;
         state.drawn = seeds.size();
         if (frame.stopped() || !(state.sum > 0)) return state;
-        state.chains.resize(std::clamp<std::size_t>(frame.area() / 16, 1, static_cast<std::size_t>(std::max(chains, 1))));
+        state.chains.resize(
+            std::clamp<std::size_t>(frame.area() / 16, 1, static_cast<std::size_t>(std::max(chains, 1))));
         // Evenly through the sum, from a random begin.
         const double step = state.sum / double(state.chains.size());
         double next = step * RandomSequence(~seeds[0].seed).next(), sum = 0;
@@ -200,12 +205,15 @@ private:
         splat(chain.current, stayed);
     }
 
-    /// The path of `depth` segments that the random numbers describe. What is not finite is told to `splatter` and counts as black.
+    /// The path of `depth` segments that the random numbers describe. What is not finite is told to `splatter` and
+    /// counts as black.
     Sample evaluate(const auto& frame, PrimarySample& sample, const State& state, int depth, Splatter* splatter) const {
         const auto& scene = frame.scene();
         const Camera& camera = scene.camera();
-        PrimarySample::Reader control(sample, strategy_stream), on_camera(sample, camera_stream), on_light(sample, light_stream);
-        const int strategies = depth + 1, s = std::min(static_cast<int>(control.next_1d() * static_cast<float>(strategies)), depth);
+        PrimarySample::Reader control(sample, strategy_stream), on_camera(sample, camera_stream),
+            on_light(sample, light_stream);
+        const int strategies = depth + 1,
+                  s = std::min(static_cast<int>(control.next_1d() * static_cast<float>(strategies)), depth);
         const int t = strategies - s;
         // A filter that is wider than a pixel also sees what is just outside of the film.
         const float margin = std::max(scene.film().filter.radius() - 0.5f, 0.0f);
@@ -250,7 +258,8 @@ private:
             }
         }
         if (s > 0 && !visible(scene, found)) return {};
-        result.value = found.value * static_cast<float>(double(found.weight) * area * strategies / state.depths.probability(depth));
+        result.value = found.value *
+                       static_cast<float>(double(found.weight) * area * strategies / state.depths.probability(depth));
         if (!is_finite(result.value)) {
             if (splatter) splatter->splat(result.pixel, result.value);
             return {};

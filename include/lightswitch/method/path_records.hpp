@@ -10,8 +10,9 @@
 
 namespace lightswitch {
 
-/// Records of light paths, in the order of the paths' numbers whatever the threads. `start` and `push` are for the function that runs
-/// in `Frame::paths` (with its usual share of work `per_unit`); everything else is for one thread before or after.
+/// Records of light paths, in the order of the paths' numbers whatever the threads. `start` and `push` are for the
+/// function that runs in `Frame::paths` (with its usual share of work `per_unit`); everything else is for one thread
+/// before or after.
 template <class Record, std::uint64_t per_unit>
 class PathRecords {
 public:

@@ -6,13 +6,14 @@
 
 namespace lightswitch {
 
-/// Path tracing as the rendering equation says it (Kajiya 1986): directions are sampled from the BSDF alone and light counts where
-/// a path happens to meet it. Nothing can be forgotten or counted twice, which makes it the ground truth; it cannot see point or
-/// directional lights, and small lights are noisy.
+/// Path tracing as the rendering equation says it (Kajiya 1986): directions are sampled from the BSDF alone and light
+/// counts where a path happens to meet it. Nothing can be forgotten or counted twice, which makes it the ground truth;
+/// it cannot see point or directional lights, and small lights are noisy.
 struct PathTracer {
     static constexpr std::string_view name = "path";
     static constexpr Kind kind = Kind::unbiased;
-    static constexpr PathClasses cannot_make{.dirac_light = true, .dirac_caustic = true, .mirrored_dirac_caustic = true};
+    static constexpr PathClasses cannot_make{
+        .dirac_light = true, .dirac_caustic = true, .mirrored_dirac_caustic = true};
 
     int max_depth = PathLength{}.max_depth;  ///< see `PathLength`
     int rr_depth = PathLength{}.rr_depth;

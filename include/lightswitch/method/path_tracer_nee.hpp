@@ -8,8 +8,8 @@
 
 namespace lightswitch {
 
-/// Path tracing with next event estimation: at every vertex one point of one light is connected directly, and joined with the
-/// directions that the BSDF samples by multiple importance sampling (Veach and Guibas 1995; power heuristic).
+/// Path tracing with next event estimation: at every vertex one point of one light is connected directly, and joined
+/// with the directions that the BSDF samples by multiple importance sampling (Veach and Guibas 1995; power heuristic).
 struct PathTracerNee {
     static constexpr std::string_view name = "path-nee";
     static constexpr Kind kind = Kind::unbiased;
@@ -46,16 +46,17 @@ struct PathTracerNee {
             if (!specular) light = scene.sample_light(*hit, choices.x, on_light);
             const Vec3 local_wi = basis.to_local(light.wi);
             BsdfValue scattering;
-            const auto scattered = scene.with_bsdf(*hit, [&](const auto& bsdf) __attribute__((always_inline)) {
-                if constexpr (!std::remove_cvref_t<decltype(bsdf)>::specular)
-                    scattering = bsdf.evaluate(local_wo, local_wi, Transport::radiance);
-                return bsdf.sample(local_wo, Vec3(direction, choices.x), Transport::radiance);
-            });
+            const auto scattered = scene.with_bsdf(
+                *hit, [&](const auto& bsdf) __attribute__((always_inline)) {
+                    if constexpr (!std::remove_cvref_t<decltype(bsdf)>::specular)
+                        scattering = bsdf.evaluate(local_wo, local_wi, Transport::radiance);
+                    return bsdf.sample(local_wo, Vec3(direction, choices.x), Transport::radiance);
+                });
             // Traced after both directions are known: the processor works on the next ray meanwhile.
             if (light.pdf.value > 0 && !is_black(scattering.value) && !scene.occluded(light.visibility)) {
                 const float weight = light.dirac ? 1 : power_heuristic(light.pdf, scattering.pdf);
-                sum += throughput * scattering.value * light.radiance *
-                       (std::abs(local_wi.z) / light.pdf.value * weight);
+                sum +=
+                    throughput * scattering.value * light.radiance * (std::abs(local_wi.z) / light.pdf.value * weight);
             }
             if (!scattered) break;
             throughput *= scattered->weight;

@@ -6,25 +6,25 @@
 
 namespace lightswitch {
 
-/// Local illumination after Phong ("Illumination for Computer Generated Pictures", CACM 1975): ambient, diffuse and specular
-/// terms from the scene's own materials, with one shadow ray to one point of each light. No randomness but the pixel filter.
+/// Local illumination after Phong ("Illumination for Computer Generated Pictures", CACM 1975): ambient, diffuse and
+/// specular terms from the scene's own materials, with one shadow ray to one point of each light. No randomness but the
+/// pixel filter.
 ///
 /// Each luminous shape acts as a light at its centroid, with hard shadows; an environment only brightens everything.
 struct Phong {
     static constexpr std::string_view name = "phong";
     static constexpr Kind kind = Kind::heuristic;
 
-    float ambient = 0.5f;  ///< ambient light, as a fraction of what the lights would give if spread over the whole scene
+    float ambient =
+        0.5f;  ///< ambient light, as a fraction of what the lights would give if spread over the whole scene
 
     Rgb radiance(const auto& scene, const Ray& ray, auto&) const {
         const auto hit = scene.intersect(ray);
         if (!hit) return scene.environment(ray.direction);
         const Vec3 wo = -ray.direction;
         const PhongTerms terms = scene.with_bsdf(*hit, [](const auto& bsdf) {
-            if constexpr (requires { bsdf.phong(); })
-                return bsdf.phong();
-            else
-                return PhongTerms{};
+            if constexpr (requires { bsdf.phong(); }) return bsdf.phong();
+            else return PhongTerms{};
         });
         // Both sides of a surface are lit: a picture shows more than a hole.
         const Vec3 normal = dot(hit->shading_normal, wo) < 0 ? -hit->shading_normal : hit->shading_normal;
@@ -45,9 +45,9 @@ struct Phong {
 
 private:
     struct Arrival {
-        Vec3 wi;          // unit, towards the light
-        Vec3 to_light;    // its length is the distance
-        Rgb irradiance;   // on a surface that faces the light
+        Vec3 wi;         // unit, towards the light
+        Vec3 to_light;   // its length is the distance
+        Rgb irradiance;  // on a surface that faces the light
     };
 
     static Arrival arrival(const Emitter& emitter, const SurfacePoint& at) {
@@ -60,21 +60,21 @@ private:
         return {wi, to_light, emitter.strength * (facing / distance2)};
     }
 
-    /// The area of an emitter as seen along `wi`: exact for flat ones, and a quarter of the surface for closed convex ones
-    /// (Cauchy), whose vector area vanishes.
+    /// The area of an emitter as seen along `wi`: exact for flat ones, and a quarter of the surface for closed convex
+    /// ones (Cauchy), whose vector area vanishes.
     static float projected_area(const Emitter& emitter, const Vec3& wi) {
         const bool closed = length_squared(emitter.vector_area) < square(0.1f * emitter.area);
         return closed ? emitter.area / 4 : std::max(-dot(emitter.vector_area, wi), 0.0f);
     }
 
-    /// The light's flux spread evenly over a sphere of radius 1, which holds the scene: its order of magnitude is right for any
-    /// scene, and no unit enters.
+    /// The light's flux spread evenly over a sphere of radius 1, which holds the scene: its order of magnitude is right
+    /// for any scene, and no unit enters.
     Rgb ambient_irradiance(const Emitter& emitter) const {
         switch (emitter.kind) {
-        case Emitter::Kind::environment: return pi * emitter.strength;
-        case Emitter::Kind::directional: return ambient / 4 * emitter.strength;
-        case Emitter::Kind::point: return ambient * emitter.strength;
-        default: return ambient / 4 * emitter.area * emitter.strength;
+            case Emitter::Kind::environment: return pi * emitter.strength;
+            case Emitter::Kind::directional: return ambient / 4 * emitter.strength;
+            case Emitter::Kind::point: return ambient * emitter.strength;
+            default: return ambient / 4 * emitter.area * emitter.strength;
         }
     }
 

@@ -9,18 +9,21 @@
 
 namespace lightswitch {
 
-/// Photon mapping (Jensen 1996), progressive (Knaus and Zwicker 2011): light paths leave photons where they meet surfaces that are not
-/// specular; paths from the camera go on to the first such surface and gather the photons around. Every iteration has photons of its
-/// own and a smaller radius, so that the mean over the iterations converges to the exact image.
+/// Photon mapping (Jensen 1996), progressive (Knaus and Zwicker 2011): light paths leave photons where they meet
+/// surfaces that are not specular; paths from the camera go on to the first such surface and gather the photons around.
+/// Every iteration has photons of its own and a smaller radius, so that the mean over the iterations converges to the
+/// exact image.
 struct PhotonMapping {
     static constexpr std::string_view name = "photon";
     static constexpr Kind kind = Kind::consistent;
 
     int max_depth = PathLength{}.max_depth;  ///< see `PathLength`
     int rr_depth = PathLength{}.rr_depth;
-    double paths_per_pixel = 1;  ///< light paths of an iteration, over the number of pixels; at least one path is traced
+    double paths_per_pixel =
+        1;  ///< light paths of an iteration, over the number of pixels; at least one path is traced
     MergeRadius radius = {.pixels = 2};
-    bool final_gather = false;  ///< one more bounce before photons are gathered, and direct light by next event estimation
+    bool final_gather =
+        false;  ///< one more bounce before photons are gathered, and direct light by next event estimation
 
     class State {
     public:
@@ -53,9 +56,8 @@ struct PhotonMapping {
         state.paths.reset(light_paths);
         frame.paths(light_paths, [&](std::uint64_t path, auto& sampler, auto&) {
             state.paths.start(path);
-            trace_light_subpath(scene, sampler, {{max_depth, rr_depth}}, {}, [&](const PathVertex& y) {
-                state.paths.push(path, photon_at(y));
-            });
+            trace_light_subpath(scene, sampler, {{max_depth, rr_depth}}, {},
+                                [&](const PathVertex& y) { state.paths.push(path, photon_at(y)); });
         });
         if (frame.stopped()) return;
         state.paths.list(state.photons, frame.executor(), [](const Photon& photon) { return photon; });

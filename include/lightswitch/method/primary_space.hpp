@@ -10,9 +10,10 @@
 
 namespace lightswitch {
 
-/// A point of the unit cube of as many dimensions as a path asks for (Kelemen et al., "A Simple and Robust Mutation Strategy for the
-/// Metropolis Light Transport Algorithm", 2002). Dimensions are in streams, so that one part of a path can grow without shifting the
-/// numbers of another. A number is brought up to date when it is asked for: those that are not used cost nothing.
+/// A point of the unit cube of as many dimensions as a path asks for (Kelemen et al., "A Simple and Robust Mutation
+/// Strategy for the Metropolis Light Transport Algorithm", 2002). Dimensions are in streams, so that one part of a path
+/// can grow without shifting the numbers of another. A number is brought up to date when it is asked for: those that
+/// are not used cost nothing.
 ///
 /// `propose` begins a step, `accept` or `reject` ends it.
 class PrimarySample {

@@ -10,9 +10,10 @@ struct PathLength {
     int rr_depth = 5;    ///< Russian roulette begins after that many bounces
 };
 
-/// Russian roulette after `bounces` bounces (counted from 1): false ends the path; otherwise `throughput` is divided by the
-/// probability of going on. `eta` is the product of the relative indices of refraction crossed: radiance grows by its square
-/// inside a medium and falls again on leaving, and must not raise the survival (Walter's fix, as in Mitsuba 3).
+/// Russian roulette after `bounces` bounces (counted from 1): false ends the path; otherwise `throughput` is divided by
+/// the probability of going on. `eta` is the product of the relative indices of refraction crossed: radiance grows by
+/// its square inside a medium and falls again on leaving, and must not raise the survival (Walter's fix, as in Mitsuba
+/// 3).
 inline bool survives_roulette(Rgb& throughput, float eta, int bounces, int rr_depth, float u) {
     const float largest = max_component(throughput);
     if (largest == 0) return false;

@@ -1,15 +1,16 @@
 #pragma once
 
 #include <lightswitch/core/pdf.hpp>
-#include <lightswitch/scene/surface_point.hpp>
+#include <lightswitch/geometry/surface_point.hpp>
 
 namespace lightswitch {
 
-/// What next event estimation at the vertex before could have found: the weight of light that a path then meets by chance (power
-/// heuristic). 1 where nothing was sampled, as at the camera and after a specular bounce.
+/// What next event estimation at the vertex before could have found: the weight of light that a path then meets by
+/// chance (power heuristic). 1 where nothing was sampled, as at the camera and after a specular bounce.
 class SampledLight {
 public:
-    /// The path leaves `at` along a direction of that density; `sampled` says whether light was sampled there that it could meet.
+    /// The path leaves `at` along a direction of that density; `sampled` says whether light was sampled there that it
+    /// could meet.
     [[gnu::always_inline]] void leave(const SurfacePoint& at, SolidAnglePdf pdf, bool sampled) {
         sampled_ = sampled;
         pdf_ = pdf;

@@ -4,8 +4,8 @@
 
 namespace lightswitch {
 
-/// One colour where a ray hits anything, black elsewhere: the coverage of the scene (Sato and Cohen 2021, the first renderer of
-/// the paper, which uses magenta).
+/// One colour where a ray hits anything, black elsewhere: the coverage of the scene (Sato and Cohen 2021, the first
+/// renderer of the paper, which uses magenta).
 struct Silhouette {
     static constexpr std::string_view name = "silhouette";
     static constexpr Kind kind = Kind::heuristic;

@@ -1,10 +1,11 @@
 #pragma once
 
-// Paths from the lights and from the camera, which the bidirectional methods join, with the weights of multiple importance sampling
-// in a form that is carried along the path: a vertex knows all that a weight needs of the path before it (Georgiev, "Implementing
-// Vertex Connection and Merging", 2012; the names there are d^VCM, d^VC and d^VM).
+// Paths from the lights and from the camera, which the bidirectional methods join, with the weights of multiple
+// importance sampling in a form that is carried along the path: a vertex knows all that a weight needs of the path
+// before it (Georgiev, "Implementing Vertex Connection and Merging", 2012; the names there are d^VCM, d^VC and d^VM).
 //
-// Densities are compared by the power heuristic with exponent 2. Sums are in double: they are products of many densities.
+// Densities are compared by the power heuristic with exponent 2. Sums are in double: they are products of many
+// densities.
 
 #include <lightswitch/bsdf/bsdf.hpp>
 #include <lightswitch/light/light.hpp>
@@ -22,16 +23,17 @@ struct PathLimits : PathLength {
 /// What a ratio of two densities counts in a weight.
 inline double heuristic(double ratio) { return ratio * ratio; }
 
-/// How merging (of camera path vertices with the light path vertices around them) is weighed against connecting. Both 0 for a method
-/// that only connects. With n light paths per iteration and radius r, merging has n pi r^2 times the density of a connection.
+/// How merging (of camera path vertices with the light path vertices around them) is weighed against connecting. Both 0
+/// for a method that only connects. With n light paths per iteration and radius r, merging has n pi r^2 times the
+/// density of a connection.
 struct MergeWeights {
     double merges = 0;   ///< n pi r^2
     double merge = 0;    ///< heuristic(merges)
     double connect = 0;  ///< heuristic(1 / merges)
 };
 
-/// Sums over all strategies that make the path before a vertex otherwise, each as a ratio of densities (through `heuristic`), without
-/// the factors that depend on how the path goes on.
+/// Sums over all strategies that make the path before a vertex otherwise, each as a ratio of densities (through
+/// `heuristic`), without the factors that depend on how the path goes on.
 struct PartialWeights {
     double last = 0;         ///< the strategy that connects at the vertex before
     double connections = 0;  ///< all that connect further back
@@ -46,24 +48,26 @@ struct PathVertex {
     int edges = 0;  ///< segments from the start of the path to here
 };
 
-/// Where a path comes from, in the frame of the surface: worked out once for all the ways in which the path could go on.
+/// Where a path comes from, in the frame of the surface: worked out once for all the ways in which the path could go
+/// on.
 struct Arrival {
     Basis basis;
     Vec3 from;
 
-    [[gnu::always_inline]] explicit Arrival(const SurfacePoint& at) : basis(at.shading_frame()), from(basis.to_local(at.wo)) {}
+    [[gnu::always_inline]] explicit Arrival(const SurfacePoint& at)
+        : basis(at.shading_frame()), from(basis.to_local(at.wo)) {}
 };
 
 /// A BSDF evaluated between the direction that a path comes from and one that it could leave by.
 struct Turn {
-    Rgb value{0};               ///< the BSDF times the cosine that belongs to it, see `turn`
-    SolidAnglePdf pdf{};        ///< of going there
+    Rgb value{0};                 ///< the BSDF times the cosine that belongs to it, see `turn`
+    SolidAnglePdf pdf{};          ///< of going there
     SolidAnglePdf reverse_pdf{};  ///< of coming the other way
 };
 
-/// The cosine that the BSDF is multiplied by where a path leaves along `out`. Interpolated normals make it differ: radiance takes the
-/// cosine of the incident light to the shading normal; light, which travels the other way, must take the same one, over the cosine to
-/// the true surface by which its power was spread there (Veach 1997, section 5.3.2).
+/// The cosine that the BSDF is multiplied by where a path leaves along `out`. Interpolated normals make it differ:
+/// radiance takes the cosine of the incident light to the shading normal; light, which travels the other way, must take
+/// the same one, over the cosine to the true surface by which its power was spread there (Veach 1997, section 5.3.2).
 template <Transport transport>
 [[gnu::always_inline]] inline float cosine_factor(const SurfacePoint& at, const Vec3& out) {
     if constexpr (transport == Transport::radiance) {
@@ -76,35 +80,37 @@ template <Transport transport>
 
 /// `Turn` of the path at `at` towards `out` (unit). Black at a specular surface.
 template <Transport transport>
-[[gnu::always_inline]] inline Turn turn(const auto& scene, const SurfacePoint& at, const Arrival& arrival, const Vec3& out) {
+[[gnu::always_inline]] inline Turn turn(const auto& scene, const SurfacePoint& at, const Arrival& arrival,
+                                        const Vec3& out) {
     const Vec3 from = arrival.from, to = arrival.basis.to_local(out);
-    return scene.with_bsdf(at, [&](const auto& bsdf) __attribute__((always_inline)) {
-        Turn result;
-        if constexpr (!std::remove_cvref_t<decltype(bsdf)>::specular) {
-            const BsdfValue scattering = bsdf.evaluate(from, to, transport);
-            if (!is_black(scattering.value)) {
-                result = {.value = scattering.value * cosine_factor<transport>(at, out),
-                          .pdf = scattering.pdf,
-                          .reverse_pdf = bsdf.evaluate(to, from, transport).pdf};
+    return scene.with_bsdf(
+        at, [&](const auto& bsdf) __attribute__((always_inline)) {
+            Turn result;
+            if constexpr (!std::remove_cvref_t<decltype(bsdf)>::specular) {
+                const BsdfValue scattering = bsdf.evaluate(from, to, transport);
+                if (!is_black(scattering.value)) {
+                    result = {.value = scattering.value * cosine_factor<transport>(at, out),
+                              .pdf = scattering.pdf,
+                              .reverse_pdf = bsdf.evaluate(to, from, transport).pdf};
+                }
             }
-        }
-        return result;
-    });
+            return result;
+        });
 }
 
-/// A path as it grows from a light (`Transport::importance`) or from the camera (`Transport::radiance`). `advance` and `scatter` take
-/// turns: after `advance` the vertex at hand is complete, and `scatter` chooses how the path leaves it.
+/// A path as it grows from a light (`Transport::importance`) or from the camera (`Transport::radiance`). `advance` and
+/// `scatter` take turns: after `advance` the vertex at hand is complete, and `scatter` chooses how the path leaves it.
 template <Transport transport>
 class Subpath {
 public:
     /// From the camera, along a ray of `Camera::ray`; `light_paths` is how many light paths an iteration has.
-    Subpath(const Ray& camera_ray, double light_paths, const MergeWeights& merge_weights)
-        requires(transport == Transport::radiance)
+    Subpath(const Ray& camera_ray, double light_paths,
+            const MergeWeights& merge_weights) requires(transport == Transport::radiance)
         : ray_(camera_ray), merge_weights_(merge_weights), light_paths_(light_paths) {}
 
     /// From a light that `sampler` chooses. The path carries nothing when there is no light.
-    Subpath(const auto& scene, auto& sampler, const MergeWeights& merge_weights)
-        requires(transport == Transport::importance)
+    Subpath(const auto& scene, auto& sampler,
+            const MergeWeights& merge_weights) requires(transport == Transport::importance)
         : merge_weights_(merge_weights) {
         const float choice = sampler.next_1d();
         const Vec2 place = sampler.next_2d(), direction = sampler.next_2d();
@@ -138,18 +144,19 @@ public:
         return cosine > 0;
     }
 
-    /// Chooses the direction in which the path leaves the vertex; false when it ends there. `direction` and `choices.x` select the
-    /// direction, `choices.y` is for Russian roulette after `rr_depth` bounces.
+    /// Chooses the direction in which the path leaves the vertex; false when it ends there. `direction` and `choices.x`
+    /// select the direction, `choices.y` is for Russian roulette after `rr_depth` bounces.
     [[gnu::always_inline]] bool scatter(const auto& scene, const Vec2& direction, const Vec2& choices, int rr_depth) {
         const SurfacePoint& at = vertex_.point;
         const Arrival arrival(at);
         SolidAnglePdf reverse;
-        const auto scattered = scene.with_bsdf(at, [&](const auto& bsdf) __attribute__((always_inline)) {
-            const auto result = bsdf.sample(arrival.from, Vec3(direction, choices.x), transport);
-            if constexpr (!std::remove_cvref_t<decltype(bsdf)>::specular)
-                if (result && !result->specular) reverse = bsdf.evaluate(result->wi, arrival.from, transport).pdf;
-            return result;
-        });
+        const auto scattered = scene.with_bsdf(
+            at, [&](const auto& bsdf) __attribute__((always_inline)) {
+                const auto result = bsdf.sample(arrival.from, Vec3(direction, choices.x), transport);
+                if constexpr (!std::remove_cvref_t<decltype(bsdf)>::specular)
+                    if (result && !result->specular) reverse = bsdf.evaluate(result->wi, arrival.from, transport).pdf;
+                return result;
+            });
         if (!scattered) return false;
         const Vec3 out = arrival.basis.to_world(scattered->wi);
         beta_ *= scattered->weight;
@@ -206,8 +213,8 @@ inline bool connectable(const auto& scene, const SurfacePoint& at) {
     return !scene.with_bsdf(at, [](const auto& bsdf) { return std::remove_cvref_t<decltype(bsdf)>::specular; });
 }
 
-/// Traces a path from a light, calls `visit(vertex)` at each vertex to which something can be connected, and ends it when no path of
-/// the allowed length could come of it.
+/// Traces a path from a light, calls `visit(vertex)` at each vertex to which something can be connected, and ends it
+/// when no path of the allowed length could come of it.
 void trace_light_subpath(const auto& scene, auto& sampler, const PathLimits& limits, const MergeWeights& merge_weights,
                          const auto& visit) {
     LightSubpath path(scene, sampler, merge_weights);

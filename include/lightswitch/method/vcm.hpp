@@ -8,9 +8,10 @@
 
 namespace lightswitch {
 
-/// Vertex connection and merging (Georgiev, Krivanek, Davidovic, Slusallek, "Light Transport Simulation with Vertex Connection and
-/// Merging", 2012): bidirectional path tracing whose camera paths also gather the vertices of all light paths around them, all weighed
-/// against each other. What connections cannot find, such as a caustic seen in a mirror, merging does.
+/// Vertex connection and merging (Georgiev, Krivanek, Davidovic, Slusallek, "Light Transport Simulation with Vertex
+/// Connection and Merging", 2012): bidirectional path tracing whose camera paths also gather the vertices of all light
+/// paths around them, all weighed against each other. What connections cannot find, such as a caustic seen in a mirror,
+/// merging does.
 struct Vcm {
     static constexpr std::string_view name = "vcm";
     static constexpr Kind kind = Kind::consistent;
@@ -48,7 +49,9 @@ struct Vcm {
         const double n = double(light_paths);
         const float r = radius.at(frame.iteration(), state.footprint);
         const MergeWeights weights = merge_weights(n, r);
-        const auto count = [](const Contribution& contribution, int, int) { return contribution.value * contribution.weight; };
+        const auto count = [](const Contribution& contribution, int, int) {
+            return contribution.value * contribution.weight;
+        };
 
         state.paths.reset(light_paths);
         frame.paths(light_paths, [&](std::uint64_t path, auto& sampler, auto& splatter) {

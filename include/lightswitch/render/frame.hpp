@@ -3,12 +3,12 @@
 // One iteration as a method sees it: the scene, and two verbs that run in parallel.
 
 #include <lightswitch/core/parallel.hpp>
+#include <lightswitch/core/ray_count.hpp>
 #include <lightswitch/core/sampler.hpp>
-#include <lightswitch/embree/accelerator.hpp>
 #include <lightswitch/film/film.hpp>
 #include <lightswitch/film/filter.hpp>
+#include <lightswitch/geometry/ray.hpp>
 #include <lightswitch/scene/camera.hpp>
-#include <lightswitch/scene/ray.hpp>
 
 #include <algorithm>
 #include <concepts>
@@ -33,13 +33,14 @@ struct RenderCounts {
     std::uint64_t shadow_rays = 0;  ///< visibility rays among them
     std::uint64_t paths = 0;        ///< light paths started by `Frame::paths`
     std::uint64_t splats = 0;
-    /// Contributions that were not finite, replaced by black, and rays that Embree must not see (`embree::Accelerator`), which meet
-    /// nothing.
+    /// Contributions that were not finite, replaced by black, and rays that Embree must not see
+    /// (`embree::Accelerator`), which meet nothing.
     std::uint64_t non_finite = 0;
-    std::vector<NonFinite> first_non_finite;   ///< the first 16 of them, in the order of iteration and pixel
+    std::vector<NonFinite> first_non_finite;  ///< the first 16 of them, in the order of iteration and pixel
 };
 
-/// Light paths of `Frame::paths` with consecutive numbers from a multiple of this one on are traced in order by one thread.
+/// Light paths of `Frame::paths` with consecutive numbers from a multiple of this one on are traced in order by one
+/// thread.
 inline constexpr std::uint64_t paths_per_unit = 1024;
 
 namespace detail {
@@ -60,9 +61,9 @@ struct UnitReport {
 /// Counts the rays of a unit by the thread's counters before and after.
 class UnitScope {
 public:
-    explicit UnitScope(UnitReport& report) : report_(report), before_(embree::ray_count) {}
+    explicit UnitScope(UnitReport& report) : report_(report), before_(ray_count) {}
     ~UnitScope() {
-        const auto& now = embree::ray_count;
+        const auto& now = ray_count;
         report_.shadow_rays += now.occluded - before_.occluded;
         report_.rays += now.occluded - before_.occluded + now.intersect - before_.intersect;
     }
@@ -71,7 +72,7 @@ public:
 
 private:
     UnitReport& report_;
-    embree::RayCount before_;
+    RayCount before_;
     FlushDenormals flush_;
 };
 
@@ -82,19 +83,25 @@ class Splatter {
 public:
     Splatter(std::vector<Splat>& splats, detail::UnitReport& report, const Film& film, const Filter& filter,
              std::uint64_t iteration, std::uint64_t seed)
-        : splats_(&splats), report_(&report), width_(film.width()), height_(film.height()), filter_(filter),
-          iteration_(iteration), seed_(seed) {}
+        : splats_(&splats),
+          report_(&report),
+          width_(film.width()),
+          height_(film.height()),
+          filter_(filter),
+          iteration_(iteration),
+          seed_(seed) {}
 
-    /// Adds `value` at the point `at` (columns and rows from the top left corner of the film) to the pixels around it, by the weights
-    /// of the film's filter: with the box, to the pixel that holds the point. `value` is the integrand over the area of the film (in
-    /// pixels) divided by the density of `at`. What is off the film is ignored; what is not finite is counted and dropped.
+    /// Adds `value` at the point `at` (columns and rows from the top left corner of the film) to the pixels around it,
+    /// by the weights of the film's filter: with the box, to the pixel that holds the point. `value` is the integrand
+    /// over the area of the film (in pixels) divided by the density of `at`. What is off the film is ignored; what is
+    /// not finite is counted and dropped.
     void splat(const Vec2& at, const Rgb& value) {
         const bool finite = is_finite(value);
         if (filter_.kind() == Filter::Kind::box) {
-            if (at.x >= 0 && at.y >= 0 && at.x < static_cast<float>(width_) && at.y < static_cast<float>(height_)) [[likely]]
+            if (at.x >= 0 && at.y >= 0 && at.x < static_cast<float>(width_) && at.y < static_cast<float>(height_))
+                [[likely]]
                 add(static_cast<int>(at.x), static_cast<int>(at.y), value, finite);
-            else if (!(is_finite(at.x) && is_finite(at.y)))
-                add(0, 0, value, false);
+            else if (!(is_finite(at.x) && is_finite(at.y))) add(0, 0, value, false);
             return;
         }
         if (!(is_finite(at.x) && is_finite(at.y))) return add(0, 0, value, false);
@@ -116,11 +123,11 @@ public:
 
 private:
     void add(int x, int y, const Rgb& value, bool finite) {
-        const auto pixel = static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(width_) + static_cast<std::uint32_t>(x);
+        const auto pixel =
+            static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(width_) + static_cast<std::uint32_t>(x);
         if (finite) [[likely]]
             splats_->push_back({pixel, value});
-        else
-            report_->note({iteration_, seed_, pixel});
+        else report_->note({iteration_, seed_, pixel});
     }
 
     std::vector<Splat>* splats_;
@@ -140,10 +147,17 @@ struct PixelContext {
 template <class SceneType, Executor E>
 class Frame {
 public:
-    Frame(const SceneType& scene, Film& film, const E& executor, const Filter& filter, Sampling sampling, std::uint64_t seed,
-          std::uint64_t iteration, std::stop_token stop, RenderCounts& counts)
-        : scene_(scene), film_(film), executor_(executor), filter_(filter), sampling_(sampling), seed_(seed),
-          iteration_(iteration), stop_(std::move(stop)), counts_(counts) {}
+    Frame(const SceneType& scene, Film& film, const E& executor, const Filter& filter, Sampling sampling,
+          std::uint64_t seed, std::uint64_t iteration, std::stop_token stop, RenderCounts& counts)
+        : scene_(scene),
+          film_(film),
+          executor_(executor),
+          filter_(filter),
+          sampling_(sampling),
+          seed_(seed),
+          iteration_(iteration),
+          stop_(std::move(stop)),
+          counts_(counts) {}
 
     /// The iteration number of the frame that `start` is given: what it draws belongs to no iteration.
     static constexpr std::uint64_t before_the_first = ~std::uint64_t{0};
@@ -155,20 +169,24 @@ public:
     std::size_t area() const { return film_.area(); }
     std::uint64_t iteration() const { return iteration_; }
     const E& executor() const { return executor_; }
-    /// True when the loop has been asked to end; the iteration's result is then thrown away, so a method may return early.
+    /// True when the loop has been asked to end; the iteration's result is then thrown away, so a method may return
+    /// early.
     bool stopped() const { return stop_.stop_requested(); }
 
-    /// Calls `fn(ray, sampler)` once for every pixel and adds the `Rgb` that it returns to the pixel. The ray comes from the
-    /// camera through a point of the pixel's filter. `fn` may take a third argument, the `PixelContext`, through which it can splat to
-    /// other pixels.
+    /// Calls `fn(ray, sampler)` once for every pixel and adds the `Rgb` that it returns to the pixel. The ray comes
+    /// from the camera through a point of the pixel's filter. `fn` may take a third argument, the `PixelContext`,
+    /// through which it can splat to other pixels.
     ///
-    /// Every call of `pixels` or `paths` in an iteration is given random numbers of its own, independent of the other calls'.
+    /// Every call of `pixels` or `paths` in an iteration is given random numbers of its own, independent of the other
+    /// calls'.
     template <class F>
     void pixels(const F& fn) {
         static_assert(can_splat<F> ? std::is_invocable_r_v<Rgb, const F&, const Ray&, Sampler&, const PixelContext&>
                                    : std::is_invocable_r_v<Rgb, const F&, const Ray&, Sampler&>,
-                      "frame.pixels needs a function `Rgb (const Ray& ray, auto& sampler)` or `Rgb (const Ray& ray, auto& sampler, "
-                      "const PixelContext& pixel)`; it is called from several threads at once, so a lambda must not be `mutable`");
+                      "frame.pixels needs a function `Rgb (const Ray& ray, auto& sampler)` or `Rgb (const Ray& ray, "
+                      "auto& sampler, "
+                      "const PixelContext& pixel)`; it is called from several threads at once, so a lambda must not be "
+                      "`mutable`");
         const IterationPoints points = points_of_pass(2 * pixel_passes_++);
         const int columns = (width() + tile - 1) / tile, rows = (height() + tile - 1) / tile;
         const auto work = [&](std::uint64_t unit, Splatter& splatter, detail::UnitReport& report) {
@@ -179,27 +197,29 @@ public:
         run_units(units, can_splat<F> ? units_per_wave : units, work);
     }
 
-    /// Calls `fn(index, sampler, splatter)` for every index in [0, n): typically one light path each. Splats are added to the
-    /// film in the order of the index, whatever the number of threads. `per_unit` consecutive indices are the share of work that a
-    /// thread takes.
+    /// Calls `fn(index, sampler, splatter)` for every index in [0, n): typically one light path each. Splats are added
+    /// to the film in the order of the index, whatever the number of threads. `per_unit` consecutive indices are the
+    /// share of work that a thread takes.
     template <class F>
     void paths(std::uint64_t n, const F& fn, std::uint64_t per_unit = paths_per_unit) {
         static_assert(std::is_invocable_v<const F&, std::uint64_t&, Sampler&, Splatter&>,
-                      "frame.paths needs a function `(std::uint64_t index, auto& sampler, auto& splatter)`; it is called from several "
+                      "frame.paths needs a function `(std::uint64_t index, auto& sampler, auto& splatter)`; it is "
+                      "called from several "
                       "threads at once, so a lambda must not be `mutable`");
         counts_.paths += n;
         const IterationPoints points = points_of_pass(2 * path_passes_++ + 1);
         const auto work = [&](std::uint64_t unit, Splatter& splatter, detail::UnitReport& report) {
-            const std::uint64_t refused = embree::ray_count.refused;
+            const std::uint64_t refused = ray_count.refused;
             trace_paths(points, unit * per_unit, std::min((unit + 1) * per_unit, n), fn, splatter);
-            report.note({iteration_, seed_, 0}, embree::ray_count.refused - refused);
+            report.note({iteration_, seed_, 0}, ray_count.refused - refused);
         };
         run_units((n + per_unit - 1) / per_unit, units_per_wave, work);
     }
 
 private:
     static constexpr int tile = 16;
-    static constexpr std::uint64_t units_per_wave = 256;  // bounds the memory that splats take before they reach the film
+    static constexpr std::uint64_t units_per_wave =
+        256;  // bounds the memory that splats take before they reach the film
     static constexpr std::uint32_t pixel_stream = 0, path_stream = 1;
     /// Whether the function of `pixels` can splat.
     template <class F>
@@ -210,8 +230,8 @@ private:
         return {sampling_, pass == 0 ? seed_ : detail::mix64(seed_ + pass * 0x9e3779b97f4a7c15u), iteration_};
     }
 
-    /// Runs `work(unit, splatter, report)` for every unit, `per_wave` of them in parallel, and then folds, in the order of the units,
-    /// what they leave.
+    /// Runs `work(unit, splatter, report)` for every unit, `per_wave` of them in parallel, and then folds, in the order
+    /// of the units, what they leave.
     void run_units(std::uint64_t units, std::uint64_t per_wave, const auto& work) {
         for (std::uint64_t first = 0; first < units && !stopped(); first += per_wave) {
             const std::size_t wave = static_cast<std::size_t>(std::min<std::uint64_t>(per_wave, units - first));
@@ -232,13 +252,13 @@ private:
     }
 
     // The two inner loops stand alone, so that their machine code can be found and checked (tests/structure/hot_path).
-    [[gnu::noinline]] void sample_tile(const IterationPoints& points, int x0, int y0, const auto& fn, Splatter& splatter,
-                                       detail::UnitReport& report) {
+    [[gnu::noinline]] void sample_tile(const IterationPoints& points, int x0, int y0, const auto& fn,
+                                       Splatter& splatter, detail::UnitReport& report) {
         for (int y = y0; y < std::min(y0 + tile, height()); ++y)
             for (int x = x0; x < std::min(x0 + tile, width()); ++x) sample_pixel(points, x, y, fn, splatter, report);
     }
-    [[gnu::noinline]] void trace_paths(const IterationPoints& points, std::uint64_t begin, std::uint64_t end, const auto& fn,
-                                       Splatter& splatter) {
+    [[gnu::noinline]] void trace_paths(const IterationPoints& points, std::uint64_t begin, std::uint64_t end,
+                                       const auto& fn, Splatter& splatter) {
         for (std::uint64_t i = begin; i < end; ++i) {
             Sampler sampler(points, path_stream, i);
             fn(i, sampler, splatter);
@@ -248,24 +268,22 @@ private:
     template <class F>
     void sample_pixel(const IterationPoints& points, int x, int y, const F& fn, Splatter& splatter,
                       detail::UnitReport& report) {
-        const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(width()) +
-                                  static_cast<std::size_t>(x);
+        const std::size_t pixel =
+            static_cast<std::size_t>(y) * static_cast<std::size_t>(width()) + static_cast<std::size_t>(x);
         Sampler sampler(points, pixel_stream, pixel);
         const Vec2 u = sampler.next_2d();
         const Vec2 offset = filter_.kind() == Filter::Kind::box ? u - 0.5f : filter_.sample(u);
         const Vec2 position(static_cast<float>(x) + 0.5f + offset.x, static_cast<float>(y) + 0.5f + offset.y);
         const Camera& camera = scene_.camera();
         const Ray ray = camera.ray(position, camera.has_lens() ? sampler.next_2d() : Vec2(0.5f));
-        const std::uint64_t refused = embree::ray_count.refused;
+        const std::uint64_t refused = ray_count.refused;
         Rgb value;
-        if constexpr (can_splat<F>)
-            value = fn(ray, sampler, PixelContext{pixel, splatter});
-        else
-            value = fn(ray, sampler);
+        if constexpr (can_splat<F>) value = fn(ray, sampler, PixelContext{pixel, splatter});
+        else value = fn(ray, sampler);
         const bool finite = is_finite(value);
         if (finite) [[likely]]
             film_.slot(pixel) += value;
-        report.note({iteration_, seed_, static_cast<std::uint32_t>(pixel)}, embree::ray_count.refused - refused + !finite);
+        report.note({iteration_, seed_, static_cast<std::uint32_t>(pixel)}, ray_count.refused - refused + !finite);
     }
 
     void gather(const std::vector<detail::UnitReport>& reports) {

@@ -4,8 +4,8 @@
 
 #include <lightswitch/core/math.hpp>
 #include <lightswitch/core/sampler.hpp>
+#include <lightswitch/geometry/ray.hpp>
 #include <lightswitch/render/path_classes.hpp>
-#include <lightswitch/scene/ray.hpp>
 
 #include <concepts>
 #include <string_view>
@@ -21,9 +21,9 @@ enum class Kind {
 
 constexpr std::string_view name(Kind kind) {
     switch (kind) {
-    case Kind::heuristic: return "heuristic";
-    case Kind::consistent: return "consistent";
-    default: return "unbiased";
+        case Kind::heuristic: return "heuristic";
+        case Kind::consistent: return "consistent";
+        default: return "unbiased";
     }
 }
 
@@ -41,9 +41,10 @@ namespace detail {
 /// Named for every type that is to be rendered, so that the compiler says which one is no scene.
 template <class S>
 struct RequireScene {
-    static_assert(RenderableScene<S>,
-                  "what is rendered must be a scene, such as `stock::cornell_box()` or what `build_scene` returns (std::visit "
-                  "gives the one in an `AnyScene`), and comes before the method");
+    static_assert(
+        RenderableScene<S>,
+        "what is rendered must be a scene, such as `stock::cornell_box()` or what `build_scene` returns (std::visit "
+        "gives the one in an `AnyScene`), and comes before the method");
     static constexpr bool value = true;
 };
 
@@ -56,23 +57,22 @@ concept NamedMethod = requires {
     { M::kind } -> std::convertible_to<Kind>;
 };
 
-/// A method that estimates one camera ray at a time: `Rgb radiance(scene, ray, sampler) const`, the radiance that arrives at
-/// the ray's origin. Called from many threads at once on the same object.
+/// A method that estimates one camera ray at a time: `Rgb radiance(scene, ray, sampler) const`, the radiance that
+/// arrives at the ray's origin. Called from many threads at once on the same object.
 template <class M, class SceneType>
-concept PixelMethod =
-    NamedMethod<M> && detail::RequireScene<SceneType>::value &&
+concept PixelMethod = NamedMethod<M> && detail::RequireScene<SceneType>::value &&
     requires(const M method, const SceneType& scene, const Ray& ray, Sampler& sampler) {
-        { method.radiance(scene, ray, sampler) } -> std::same_as<Rgb>;
-    };
+    { method.radiance(scene, ray, sampler) } -> std::same_as<Rgb>;
+};
 
-/// A method that estimates the whole image at once: `start(frame)` gives the state that it keeps between iterations (what it adds
-/// to the film is forgotten), and `iterate(frame, state)` makes one estimate through `frame.pixels` and `frame.paths`. Both are
-/// called on one thread. An iteration that is broken off, by an exception or because `frame.stopped()`, must leave the state such
-/// that it can be made again. A state may have `statistics()`, which gives pairs of a name (in lower case, with underscores) and a
-/// number for `RenderStatistics::of_method`.
+/// A method that estimates the whole image at once: `start(frame)` gives the state that it keeps between iterations
+/// (what it adds to the film is forgotten), and `iterate(frame, state)` makes one estimate through `frame.pixels` and
+/// `frame.paths`. Both are called on one thread. An iteration that is broken off, by an exception or because
+/// `frame.stopped()`, must leave the state such that it can be made again. A state may have `statistics()`, which gives
+/// pairs of a name (in lower case, with underscores) and a number for `RenderStatistics::of_method`.
 template <class M, class FrameType>
 concept ImageMethod = NamedMethod<M> && requires(const M method, FrameType& frame) {
-    { method.start(frame) };
+    {method.start(frame)};
     method.iterate(frame, *static_cast<decltype(method.start(frame))*>(nullptr));
 };
 

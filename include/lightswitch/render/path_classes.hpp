@@ -8,13 +8,14 @@
 
 namespace lightswitch {
 
-/// A set of classes of light paths. A *Dirac light* is a point or directional one, which no ray meets by chance; a *caustic* is
-/// light that reaches a rough surface by mirrors or glass; *mirrored* is what the camera sees in mirrors or through glass.
+/// A set of classes of light paths. A *Dirac light* is a point or directional one, which no ray meets by chance; a
+/// *caustic* is light that reaches a rough surface by mirrors or glass; *mirrored* is what the camera sees in mirrors
+/// or through glass.
 ///
-/// A method says with `static constexpr PathClasses cannot_make` which of them its paths never form, however many it traces;
-/// without it, all are taken to be made. Methods may also have a member `PathClasses left_out`, the classes that are to be
-/// missing from the image, and say with `static constexpr PathClasses can_leave_out` which ones it may name: so they can be
-/// compared with methods that see less.
+/// A method says with `static constexpr PathClasses cannot_make` which of them its paths never form, however many it
+/// traces; without it, all are taken to be made. Methods may also have a member `PathClasses left_out`, the classes
+/// that are to be missing from the image, and say with `static constexpr PathClasses can_leave_out` which ones it may
+/// name: so they can be compared with methods that see less.
 struct PathClasses {
     bool dirac_light = false;             ///< all that comes from Dirac lights
     bool dirac_caustic = false;           ///< caustics of Dirac lights

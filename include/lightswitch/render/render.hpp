@@ -14,13 +14,13 @@
 
 namespace lightswitch {
 
-/// When to stop: at whichever limit is met first. A limit of 0 is no limit; without any, 64 samples. Limits are numbers and not
-/// negative.
+/// When to stop: at whichever limit is met first. A limit of 0 is no limit; without any, 64 samples. Limits are numbers
+/// and not negative.
 struct Budget {
     int samples = 0;     ///< iterations, which for most methods are samples per pixel
     double seconds = 0;  ///< of rendering; at least one iteration is made
-    /// Estimated error of the image, see `Film::relative_error`; judged from 16 iterations on. That of a black image is unknown: where
-    /// there may be no light at all, set another limit, too.
+    /// Estimated error of the image, see `Film::relative_error`; judged from 16 iterations on. That of a black image is
+    /// unknown: where there may be no light at all, set another limit, too.
     double error = 0;
 };
 
@@ -38,7 +38,7 @@ struct Settings {
     std::uint64_t seed = 0;
     int threads = 0;  ///< 0: as many as the machine has
     Sampling sampling = Sampling::sobol;
-    std::stop_token stop = {};  ///< ends the render early; whole iterations are kept
+    std::stop_token stop = {};                           ///< ends the render early; whole iterations are kept
     std::function<void(const Progress&)> observer = {};  ///< called on the rendering thread after every iteration
 };
 
@@ -71,28 +71,32 @@ decltype(auto) as_image_method(const M& method) {
     if constexpr (ImageMethod<M, FrameType>) {
         return (method);
     } else {
-        static_assert(PixelMethod<M, SceneType>,
-                      "a rendering method needs `static constexpr std::string_view name`, `static constexpr Kind kind`, and "
-                      "either `Rgb radiance(const auto& scene, const Ray&, auto& sampler) const` or "
-                      "`start(frame)` with `iterate(frame, state)` (std::visit gives the one in an `AnyMethod`)");
+        static_assert(
+            PixelMethod<M, SceneType>,
+            "a rendering method needs `static constexpr std::string_view name`, `static constexpr Kind kind`, and "
+            "either `Rgb radiance(const auto& scene, const Ray&, auto& sampler) const` or "
+            "`start(frame)` with `iterate(frame, state)` (std::visit gives the one in an `AnyMethod`)");
         return PerPixel<M>{method};
     }
 }
 
 }  // namespace detail
 
-/// A render that can be continued: what it has accumulated is a pure function of (scene, method, seed, sampling, number of
-/// iterations), whatever the threads and however often it was stopped in between. The scene must outlive it.
+/// A render that can be continued: what it has accumulated is a pure function of (scene, method, seed, sampling, number
+/// of iterations), whatever the threads and however often it was stopped in between. The scene must outlive it.
 template <class SceneType, class M, Executor E = TbbExecutor>
 class Session {
     static_assert(detail::RequireScene<SceneType>::value);
 
 public:
-    Session(const SceneType& scene, const M& method, const Settings& settings = {})
-        requires std::same_as<E, TbbExecutor>
+    Session(const SceneType& scene, const M& method,
+            const Settings& settings = {}) requires std::same_as<E, TbbExecutor>
         : Session(scene, method, settings, TbbExecutor(settings.threads)) {}
     Session(const SceneType& scene, const M& method, const Settings& settings, E executor)
-        : scene_(scene), method_(method), settings_(settings), executor_(std::move(executor)),
+        : scene_(scene),
+          method_(method),
+          settings_(settings),
+          executor_(std::move(executor)),
           film_(scene.camera().width(), scene.camera().height()) {
         statistics_.threads = executor_.threads();
         auto preparation = frame(FrameType::before_the_first);
@@ -104,9 +108,9 @@ public:
     Session(const SceneType&& scene, const M& method, const Settings& settings = {}) = delete;
     Session(const SceneType&& scene, const M& method, const Settings& settings, E executor) = delete;
 
-    /// Makes iterations until the budget is spent or the stop token asks for an end. Seconds count from this call; samples and
-    /// error concern everything accumulated so far. What a method or an observer throws comes out of here; the whole iterations
-    /// before it are kept. Throws `Error` when a limit is not one.
+    /// Makes iterations until the budget is spent or the stop token asks for an end. Seconds count from this call;
+    /// samples and error concern everything accumulated so far. What a method or an observer throws comes out of here;
+    /// the whole iterations before it are kept. Throws `Error` when a limit is not one.
     void run(Budget budget) {
         using Clock = std::chrono::steady_clock;
         check(budget);
@@ -157,7 +161,8 @@ public:
                            {"seconds", std::to_string(statistics_.seconds)},
                            {"seed", std::to_string(settings_.seed)},
                            {"sampling", std::string(lightswitch::name(settings_.sampling))}};
-        if (statistics_.counts.non_finite > 0) result.metadata["non_finite"] = std::to_string(statistics_.counts.non_finite);
+        if (statistics_.counts.non_finite > 0)
+            result.metadata["non_finite"] = std::to_string(statistics_.counts.non_finite);
         return result;
     }
 
@@ -167,14 +172,15 @@ private:
     decltype(auto) image_method() const { return detail::as_image_method<FrameType, SceneType>(method_); }
 
     FrameType frame(std::uint64_t iteration) {
-        return {scene_, film_, executor_, scene_.film().filter, settings_.sampling, settings_.seed, iteration,
-                settings_.stop, statistics_.counts};
+        return {scene_,         film_,     executor_,      scene_.film().filter, settings_.sampling,
+                settings_.seed, iteration, settings_.stop, statistics_.counts};
     }
 
     static void check(const Budget& budget) {
         const auto check_limit = [](double limit, const char* what) {
             if (!(limit >= 0))
-                throw Error(std::string("the budget of ") + what + " is " + number_text(limit) + ": give 0 for no limit");
+                throw Error(std::string("the budget of ") + what + " is " + number_text(limit) +
+                            ": give 0 for no limit");
         };
         check_limit(budget.samples, "samples");
         check_limit(budget.seconds, "seconds");
@@ -203,13 +209,14 @@ private:
     E executor_;
     Film film_;
     RenderStatistics statistics_;
-    using State = decltype(std::declval<decltype(detail::as_image_method<FrameType, SceneType>(std::declval<const M&>()))>()
-                               .start(std::declval<FrameType&>()));
+    using State =
+        decltype(std::declval<decltype(detail::as_image_method<FrameType, SceneType>(std::declval<const M&>()))>()
+                     .start(std::declval<FrameType&>()));
     std::optional<State> state_;
 };
 
-/// Renders `scene` with `method` until `budget` is spent, and returns the image. Deterministic: equal arguments give equal bits,
-/// for any number of threads, unless the budget is in seconds.
+/// Renders `scene` with `method` until `budget` is spent, and returns the image. Deterministic: equal arguments give
+/// equal bits, for any number of threads, unless the budget is in seconds.
 template <class SceneType, class M>
 Image render(const SceneType& scene, const M& method, const Budget& budget = {}, const Settings& settings = {}) {
     Session<SceneType, M> session(scene, method, settings);

@@ -11,8 +11,8 @@
 namespace lightswitch {
 
 using DiffuseBsdfs = Bsdfs<Lambert, TwoSided<Lambert>>;
-using AllBsdfs = Bsdfs<Lambert, TwoSided<Lambert>, Conductor, TwoSided<Conductor>, RoughConductor, TwoSided<RoughConductor>,
-                       Dielectric>;
+using AllBsdfs = Bsdfs<Lambert, TwoSided<Lambert>, Conductor, TwoSided<Conductor>, RoughConductor,
+                       TwoSided<RoughConductor>, Dielectric>;
 
 /// Diffuse surfaces, luminous triangles.
 using DiffuseScene = Scene<DiffuseBsdfs, Lights<TriangleLight>>;
@@ -48,7 +48,8 @@ struct Capacity<Bsdfs<B...>, Lights<L...>> {
                 return false;
         for (const auto& placed : scene.sources) {
             if (std::holds_alternative<PointSource>(placed.source) && !contains<PointLight, L...>) return false;
-            if (std::holds_alternative<DirectionalSource>(placed.source) && !contains<DirectionalLight, L...>) return false;
+            if (std::holds_alternative<DirectionalSource>(placed.source) && !contains<DirectionalLight, L...>)
+                return false;
             if (std::holds_alternative<EnvironmentSource>(placed.source) && !contains<ConstantEnvironment, L...>)
                 return false;
         }

@@ -111,7 +111,8 @@ private:
         const double scale2 = data_.space.scale() * data_.space.scale();
         const DVec3 position = data_.space.point(source.position), intensity = DVec3(source.intensity) * scale2;
         if (!(glm::length(position) < 1e18)) fail(origin, "the light is too far away beside the size of the scene");
-        if (!(glm::length(intensity) < 1e30)) fail(origin, "the light's intensity is too high beside the size of the scene");
+        if (!(glm::length(intensity) < 1e30))
+            fail(origin, "the light's intensity is too high beside the size of the scene");
         const PointLight light{Vec3(position), Rgb(intensity)};
         pending_.push_back({add_light(light, origin), 1});
         data_.emitters.push_back(
@@ -128,8 +129,8 @@ private:
         data_.emitters.push_back({.kind = Emitter::Kind::environment, .strength = source.radiance});
     }
 
-    /// Numbers the lights and decides how often each is chosen: half by power, half evenly among the emitters, because a dim light
-    /// may be the one that matters where it is near. Within an emitter its lights are chosen by power.
+    /// Numbers the lights and decides how often each is chosen: half by power, half evenly among the emitters, because
+    /// a dim light may be the one that matters where it is near. Within an emitter its lights are chosen by power.
     void finish_lights() {
         std::vector<double> powers;
         (append_powers(std::get<std::vector<L>>(data_.lights), powers), ...);
@@ -209,7 +210,8 @@ private:
                 emitter.area += float(area);
             }
         }
-        if (triangles.empty() && lost) fail(shape.origin, "the mesh is too small to be seen beside the rest of the scene");
+        if (triangles.empty() && lost)
+            fail(shape.origin, "the mesh is too small to be seen beside the rest of the scene");
         if (shape.emission) {
             if (!(emitter.area > 0)) fail(shape.origin, "the light has no area");
             emitter.position = Vec3(centroid / double(emitter.area));
@@ -233,16 +235,17 @@ private:
                             .side = sphere.inward ? -1.0f : 1.0f,
                             .material = materials_[shape.material],
                             .light = {}};
-        if (!(record.radius >= smallest)) fail(shape.origin, "the sphere is too small to be seen beside the rest of the scene");
+        if (!(record.radius >= smallest))
+            fail(shape.origin, "the sphere is too small to be seen beside the rest of the scene");
         if (!(glm::length(center) + radius <= 1.001 * radius_))
-            fail(shape.origin, "the sphere is so far from the origin that its radius is lost in the rounding of its coordinates");
+            fail(shape.origin,
+                 "the sphere is so far from the origin that its radius is lost in the rounding of its coordinates");
         if (shape.emission) {
-            record.light = add_light(SphereLight{record.center, record.radius, sphere.inward, *shape.emission, record.offset},
-                                     shape.origin);
+            record.light = add_light(
+                SphereLight{record.center, record.radius, sphere.inward, *shape.emission, record.offset}, shape.origin);
             pending_.push_back({record.light, 1});
-            data_.emitters.push_back({.strength = *shape.emission,
-                                      .position = record.center,
-                                      .area = 4 * pi * square(record.radius)});
+            data_.emitters.push_back(
+                {.strength = *shape.emission, .position = record.center, .area = 4 * pi * square(record.radius)});
         }
         data_.spheres.push_back(record);
         spheres_.push_back({record.center, record.radius});
@@ -254,13 +257,13 @@ private:
         return glm::length(glm::cross(corner(1) - corner(0), corner(2) - corner(0))) > 0;
     }
 
-    /// The radius, and edge, below which a shape in render space is no longer one: a density on it, times the square of the distance
-    /// to it, would leave the range of a float at angles that are not grazing.
+    /// The radius, and edge, below which a shape in render space is no longer one: a density on it, times the square of
+    /// the distance to it, would leave the range of a float at angles that are not grazing.
     static constexpr double smallest = 0x1p-50;
 
-    /// Bound on how far from a triangle's plane Embree may see it, for a ray that starts on the plane: the rounding of the dot
-    /// product of the normal with the edge from a corner to the origin. It grows with the size of the triangle, and with how thin
-    /// it is, because then the normal itself is a difference of large numbers.
+    /// Bound on how far from a triangle's plane Embree may see it, for a ray that starts on the plane: the rounding of
+    /// the dot product of the normal with the edge from a corner to the origin. It grows with the size of the triangle,
+    /// and with how thin it is, because then the normal itself is a difference of large numbers.
     static float intersection_error(const DVec3& a, const DVec3& b, const DVec3& c, double twice_area) {
         const double edge1 = glm::length(b - a), edge2 = glm::length(c - a);
         const double longest = std::max(edge1, std::max(edge2, glm::length(c - b)));
@@ -268,9 +271,10 @@ private:
         return static_cast<float>(double(gamma_bound(4)) * longest * thinness);
     }
 
-    /// The length of a triangle over its height. Beyond `needle` Embree's fast test is too inexact to bound: of the rays that leave
-    /// such triangles, one in 1000 at 1:100 and one in 20 at 1:1000 was seen to hit them again, and one in 10^5 with its watertight test.
-    /// A mesh that owes more than a hundredth of its area to them makes the scene use that test.
+    /// The length of a triangle over its height. Beyond `needle` Embree's fast test is too inexact to bound: of the
+    /// rays that leave such triangles, one in 1000 at 1:100 and one in 20 at 1:1000 was seen to hit them again, and one
+    /// in 10^5 with its watertight test. A mesh that owes more than a hundredth of its area to them makes the scene use
+    /// that test.
     static double slenderness(const DVec3& a, const DVec3& b, const DVec3& c, double twice_area) {
         const DVec3 ab = b - a, bc = c - b, ca = a - c;
         return std::max(glm::dot(ab, ab), std::max(glm::dot(bc, bc), glm::dot(ca, ca))) / twice_area;
@@ -306,11 +310,12 @@ private:
 
 /// Builds a scene of the given type, for example `build_scene<Bsdfs<Lambert>, Lights<TriangleLight>>(description)`.
 ///
-/// Throws `Error`, naming the place in the file if there is one, when something in the description is impossible or when the
-/// type has no room for it. Beside what Embree takes the scene keeps 36 bytes per triangle with interpolated normals, and nothing per
-/// flat one.
+/// Throws `Error`, naming the place in the file if there is one, when something in the description is impossible or
+/// when the type has no room for it. Beside what Embree takes the scene keeps 36 bytes per triangle with interpolated
+/// normals, and nothing per flat one.
 template <class BsdfList, class LightList = AllLights, class Material>
-Scene<BsdfList, LightList> build_scene(const SceneDescription<Material>& description, const BuildOptions& options = {}) {
+Scene<BsdfList, LightList> build_scene(const SceneDescription<Material>& description,
+                                       const BuildOptions& options = {}) {
     return detail::SceneAssembly<BsdfList, LightList>(options).build(description);
 }
 

@@ -4,27 +4,32 @@
 
 #include <lightswitch/core/maybe.hpp>
 #include <lightswitch/core/warp.hpp>
+#include <lightswitch/geometry/ray.hpp>
+#include <lightswitch/geometry/render_space.hpp>
+#include <lightswitch/geometry/surface_point.hpp>
 #include <lightswitch/scene/description.hpp>
-#include <lightswitch/scene/ray.hpp>
-#include <lightswitch/scene/render_space.hpp>
-#include <lightswitch/scene/surface_point.hpp>
 
 namespace lightswitch {
 
 /// A perspective camera, with a thin lens if it has an aperture, in render space. Immutable.
 ///
-/// When the camera is far from the scene its rays start at the scene's bounding sphere, a point found in double precision: a
-/// float has too few digits for an origin far away.
+/// When the camera is far from the scene its rays start at the scene's bounding sphere, a point found in double
+/// precision: a float has too few digits for an origin far away.
 class Camera {
 public:
-    /// How far away it may be, and how large its lens, as multiples of `radius`. From there a ray was seen to pass 2.5e-4 of the radius
-    /// beside where it should, in double; four times as far away that eats up the margin by which rays begin outside of the scene.
+    /// How far away it may be, and how large its lens, as multiples of `radius`. From there a ray was seen to pass
+    /// 2.5e-4 of the radius beside where it should, in double; four times as far away that eats up the margin by which
+    /// rays begin outside of the scene.
     static constexpr double farthest = 0x1p42;
 
-    /// `radius` bounds the geometry around the origin of render space. Throws `Error` when that cannot be seen from where the camera is.
+    /// `radius` bounds the geometry around the origin of render space. Throws `Error` when that cannot be seen from
+    /// where the camera is.
     Camera(const CameraDescription& description, const FilmDescription& film, const RenderSpace& space, double radius)
-        : far_away_radius_(radius * 1.001), space_(space), lens_radius_(space.length(description.aperture_radius)),
-          focus_(space.length(description.focus_distance)), near_(space.length(description.near_clip)),
+        : far_away_radius_(radius * 1.001),
+          space_(space),
+          lens_radius_(space.length(description.aperture_radius)),
+          focus_(space.length(description.focus_distance)),
+          near_(space.length(description.near_clip)),
           far_(space.length(description.far_clip)) {
         const auto& m = description.to_world;
         left_ = glm::normalize(DVec3(m[0]));
@@ -37,8 +42,8 @@ public:
         set_film(description, film);
     }
 
-    /// The ray through `pixel` (columns and rows from the top left corner; centres at halves). `lens` in [0,1)^2 is used only
-    /// by a camera with an aperture.
+    /// The ray through `pixel` (columns and rows from the top left corner; centres at halves). `lens` in [0,1)^2 is
+    /// used only by a camera with an aperture.
     Ray ray(const Vec2& pixel, const Vec2& lens) const {
         if (exact_ || lens_radius_ > 0) return general_ray(pixel, lens);
         const Vec3 along = corner_ + pixel.x * step_x_ + pixel.y * step_y_;
@@ -57,9 +62,9 @@ public:
         Ray visibility;      ///< the ray that must be free
     };
 
-    /// How the camera sees `point` through the place of the lens that `lens` in [0,1)^2 selects (see `ray`), or nothing when that
-    /// is behind the camera or outside its clipping planes. The radiance that leaves the point towards the lens, times the cosine
-    /// there, times `View::density`, is the integrand over the area of the film in pixels.
+    /// How the camera sees `point` through the place of the lens that `lens` in [0,1)^2 selects (see `ray`), or nothing
+    /// when that is behind the camera or outside its clipping planes. The radiance that leaves the point towards the
+    /// lens, times the cosine there, times `View::density`, is the integrand over the area of the film in pixels.
     Maybe<View> view(const SurfacePoint& point, const Vec2& lens) const {
         DVec3 origin = position_, shift(0);
         if (lens_radius_ > 0) {
@@ -82,8 +87,9 @@ public:
                     .visibility = point.spawn(wi, static_cast<float>((depth - near_) * per_axis))};
     }
 
-    /// Pixels per area across the ray: how much of the film a small surface at `position` fills that is seen along `direction`
-    /// (unit, either sense) and faces it. Also the density, per such area, of the points that the rays of one pixel meet there.
+    /// Pixels per area across the ray: how much of the film a small surface at `position` fills that is seen along
+    /// `direction` (unit, either sense) and faces it. Also the density, per such area, of the points that the rays of
+    /// one pixel meet there.
     double density(const Vec3& position, const Vec3& direction) const {
         const double cosine = std::abs(glm::dot(DVec3(direction), forward_));
         const double depth = glm::dot(DVec3(position) - position_, forward_);
@@ -100,7 +106,8 @@ private:
         if (!(radius > 0)) return;  // there is nothing to see
         const auto check_ratio = [&](double length, double unit, const std::string& what) {
             if (!(length <= farthest * unit))
-                fail(origin, what + " (" + number_text(length / unit) + " times; at most " + number_text(farthest) + ")");
+                fail(origin,
+                     what + " (" + number_text(length / unit) + " times; at most " + number_text(farthest) + ")");
         };
         check_ratio(distance, radius, "the camera is too far away beside the size of the scene");
         check_ratio(lens_radius_, radius, "the camera's aperture is too large beside the size of the scene");
@@ -113,8 +120,7 @@ private:
         const double aspect = static_cast<double>(film.width) / film.height;
         const double tangent = std::tan(glm::radians(description.fov) / 2);
         using Axis = CameraDescription::FovAxis;
-        const bool along_x = description.fov_axis == Axis::x ||
-                             (description.fov_axis == Axis::larger && aspect > 1) ||
+        const bool along_x = description.fov_axis == Axis::x || (description.fov_axis == Axis::larger && aspect > 1) ||
                              (description.fov_axis == Axis::smaller && aspect <= 1);
         double half_width = along_x ? tangent : tangent * aspect;
         if (description.fov_axis == Axis::diagonal) half_width = tangent / std::sqrt(1 + 1 / (aspect * aspect));

@@ -40,8 +40,8 @@ inline void check(const Mesh& mesh, const Origin& origin) {
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
         for (const std::uint32_t index : mesh.triangles[i])
             if (index >= mesh.positions.size())
-                fail(origin, "triangle " + std::to_string(i) + " uses vertex " + std::to_string(index) + ", but there are " +
-                                 std::to_string(mesh.positions.size()) + " (counted from 0)");
+                fail(origin, "triangle " + std::to_string(i) + " uses vertex " + std::to_string(index) +
+                                 ", but there are " + std::to_string(mesh.positions.size()) + " (counted from 0)");
 }
 
 inline void check(const Sphere& sphere, const Origin& origin) {
@@ -93,10 +93,8 @@ void check(const SceneDescription<Material>& scene) {
     if (const std::string problem = scene.film.filter.problem(); !problem.empty()) fail(scene.film.origin, problem);
     for (const auto& material : scene.materials) {
         std::string problem;
-        if constexpr (Bsdf<Material>)
-            problem = material.bsdf.problem();
-        else
-            problem = std::visit([](const auto& bsdf) -> std::string { return bsdf.problem(); }, material.bsdf);
+        if constexpr (Bsdf<Material>) problem = material.bsdf.problem();
+        else problem = std::visit([](const auto& bsdf) -> std::string { return bsdf.problem(); }, material.bsdf);
         if (!problem.empty()) fail(material.origin, problem);
     }
     for (const auto& shape : scene.shapes) {
@@ -108,7 +106,8 @@ void check(const SceneDescription<Material>& scene) {
     for (const auto& source : scene.sources) {
         std::visit([&](const auto& s) { check(s, source.origin); }, source.source);
         if (!std::holds_alternative<EnvironmentSource>(source.source)) continue;
-        if (has_environment) fail(source.origin, "the scene has a second environment: give one with the sum of their radiances");
+        if (has_environment)
+            fail(source.origin, "the scene has a second environment: give one with the sum of their radiances");
         has_environment = true;
     }
 }
@@ -116,7 +115,8 @@ void check(const SceneDescription<Material>& scene) {
 /// What the element after `count` others of its type is known by; throws when there is no number left.
 inline TypedIndex checked_index(std::size_t kind, std::size_t count, const Origin& origin, const std::string& what) {
     if (count > TypedIndex::max_position)
-        fail(origin, "the scene has more than " + std::to_string(TypedIndex::max_position + 1) + " " + what + " of one kind");
+        fail(origin,
+             "the scene has more than " + std::to_string(TypedIndex::max_position + 1) + " " + what + " of one kind");
     return {kind, count};
 }
 

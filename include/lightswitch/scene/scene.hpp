@@ -1,15 +1,15 @@
 #pragma once
 
-// The built scene: what rays meet, what surfaces are made of, and what shines. Its type says which surface models and which
-// lights it can hold, so that code is compiled only for what is there.
+// The built scene: what rays meet, what surfaces are made of, and what shines. Its type says which surface models and
+// which lights it can hold, so that code is compiled only for what is there.
 
 #include <lightswitch/core/dispatch.hpp>
 #include <lightswitch/core/maybe.hpp>
 #include <lightswitch/embree/accelerator.hpp>
+#include <lightswitch/geometry/surface_point.hpp>
 #include <lightswitch/light/light.hpp>
 #include <lightswitch/scene/camera.hpp>
 #include <lightswitch/scene/scene_data.hpp>
-#include <lightswitch/scene/surface_point.hpp>
 
 #include <string>
 #include <tuple>
@@ -22,7 +22,8 @@ class Scene;
 
 /// An immutable scene; see `build_scene` for how to make one. All members are safe to call from several threads.
 ///
-/// Positions and distances that it takes and gives are in render space (`RenderSpace`); `length` converts the user's units.
+/// Positions and distances that it takes and gives are in render space (`RenderSpace`); `length` converts the user's
+/// units.
 template <class... B, class... L>
 class Scene<Bsdfs<B...>, Lights<L...>> {
 public:
@@ -45,8 +46,7 @@ public:
         if (accelerator_.intersect(ray, hit)) {
             if (hit.geometry < data_.meshes.size()) [[likely]]
                 locate_on_triangle(ray, hit, point.emplace());
-            else
-                locate_on_sphere(ray, hit, point.emplace());
+            else locate_on_sphere(ray, hit, point.emplace());
         }
         return point;
     }
@@ -59,16 +59,18 @@ public:
     /// Calls `f(bsdf)` with the surface model at `point`, as its concrete type, and returns what it returns.
     template <class F>
     [[gnu::always_inline]] decltype(auto) with_bsdf(const SurfacePoint& point, F&& f) const {
-        return dispatch<sizeof...(B)>(point.material.kind(), [&](auto kind) __attribute__((always_inline)) -> decltype(auto) {
-            return f(std::get<kind>(data_.bsdfs)[point.material.position()]);
-        });
+        return dispatch<sizeof...(B)>(
+            point.material.kind(), [&](auto kind) __attribute__((always_inline))->decltype(auto) {
+                return f(std::get<kind>(data_.bsdfs)[point.material.position()]);
+            });
     }
 
     /// Whether the scene has a material that is a mirror or clear glass: one whose lobes are all Dirac distributions.
     bool has_specular() const {
         return [&]<std::size_t... I>(std::index_sequence<I...>) {
             return ((B::specular && !std::get<I>(data_.bsdfs).empty()) || ...);
-        }(std::index_sequence_for<B...>{});
+        }
+        (std::index_sequence_for<B...>{});
     }
 
     // --- lights
@@ -76,12 +78,11 @@ public:
     /// Radiance that the surface at `point` emits along `direction` (unit, away from the surface).
     [[gnu::always_inline]] Rgb emitted(const SurfacePoint& point, const Vec3& direction) const {
         if (!point.light) return Rgb(0);
-        return with_light(point.light, [&](const auto& light) __attribute__((always_inline)) {
-            if constexpr (is_area<decltype(light)>)
-                return light.emitted(point, direction);
-            else
-                return Rgb(0);
-        });
+        return with_light(
+            point.light, [&](const auto& light) __attribute__((always_inline)) {
+                if constexpr (is_area<decltype(light)>) return light.emitted(point, direction);
+                else return Rgb(0);
+            });
     }
 
     /// Radiance that arrives from beyond the scene out of `direction`.
@@ -91,30 +92,31 @@ public:
         return sum;
     }
 
-    /// A direction towards a light that `choice` in [0, 1) selects (half by power, half evenly among the emitters) and on which `u` selects a place; the density
-    /// includes the selection. Black when there is no light.
+    /// A direction towards a light that `choice` in [0, 1) selects (half by power, half evenly among the emitters) and
+    /// on which `u` selects a place; the density includes the selection. Black when there is no light.
     [[gnu::always_inline]] LightSample sample_light(const SurfacePoint& from, float choice, const Vec2& u) const {
         if (data_.light_choice.empty()) return {};
         const std::size_t number = data_.light_choice.sample(choice);
-        LightSample sample = with_light(locate(number), [&](const auto& light) __attribute__((always_inline)) { return light.sample(from, u); });
+        LightSample sample = with_light(
+            locate(number), [&](const auto& light) __attribute__((always_inline)) { return light.sample(from, u); });
         sample.pdf = sample.pdf * data_.light_choice.probability(number);
         return sample;
     }
 
-    /// The density with which `sample_light` at the position `from` chooses the direction `wi` to `hit`, a point on a light.
+    /// The density with which `sample_light` at the position `from` chooses the direction `wi` to `hit`, a point on a
+    /// light.
     [[gnu::always_inline]] SolidAnglePdf light_pdf(const Vec3& from, const Vec3& wi, const SurfacePoint& hit) const {
         if (data_.light_choice.empty()) return {};  // there are lights, but all are black
-        const SolidAnglePdf pdf = with_light(hit.light, [&](const auto& light) __attribute__((always_inline)) {
-            if constexpr (is_area<decltype(light)>)
-                return light.pdf(from, wi, hit);
-            else
-                return SolidAnglePdf{};
-        });
+        const SolidAnglePdf pdf = with_light(
+            hit.light, [&](const auto& light) __attribute__((always_inline)) {
+                if constexpr (is_area<decltype(light)>) return light.pdf(from, wi, hit);
+                else return SolidAnglePdf{};
+            });
         return pdf * data_.light_choice.probability(light_number(hit.light));
     }
 
-    /// The density with which `sample_light`, at a point whose `facing_normal()` is `normal`, chooses the direction `wi` through the
-    /// environment.
+    /// The density with which `sample_light`, at a point whose `facing_normal()` is `normal`, chooses the direction
+    /// `wi` through the environment.
     SolidAnglePdf environment_pdf(const Vec3& normal, const Vec3& wi) const {
         if (data_.light_choice.empty()) return {};
         SolidAnglePdf sum;
@@ -124,15 +126,17 @@ public:
         return sum;
     }
 
-    /// A ray that leaves a light: `choice` in [0, 1) selects the light as in `sample_light`, `place` and `direction` the ray. The
-    /// weight and the density include the selection. Black when there is no light.
+    /// A ray that leaves a light: `choice` in [0, 1) selects the light as in `sample_light`, `place` and `direction`
+    /// the ray. The weight and the density include the selection. Black when there is no light.
     [[gnu::always_inline]] LightEmission sample_emission(float choice, const Vec2& place, const Vec2& direction) const {
-        static_assert((EmittingLight<L> && ...), "methods that trace light need lights with `emit` and `spread` (EmittingLight)");
+        static_assert((EmittingLight<L> && ...),
+                      "methods that trace light need lights with `emit` and `spread` (EmittingLight)");
         if (data_.light_choice.empty()) return {};
         const std::size_t number = data_.light_choice.sample(choice);
         const float probability = data_.light_choice.probability(number);
         const TypedIndex light = locate(number);
-        LightEmission emission = with_light(light, [&](const auto& l) __attribute__((always_inline)) { return l.emit(place, direction); });
+        LightEmission emission = with_light(
+            light, [&](const auto& l) __attribute__((always_inline)) { return l.emit(place, direction); });
         emission.weight /= probability;
         emission.pdf = emission.pdf * probability;
         emission.light = light;
@@ -142,12 +146,11 @@ public:
     /// The density with which `sample_emission` starts a path at `hit`, a point on a light, along `direction`.
     [[gnu::always_inline]] EmissionPdf emission_pdf(const SurfacePoint& hit, const Vec3& direction) const {
         if (data_.light_choice.empty()) return {};
-        const EmissionPdf pdf = with_light(hit.light, [&](const auto& light) __attribute__((always_inline)) {
-            if constexpr (is_area<decltype(light)>)
-                return light.emission_pdf(dot(direction, hit.normal));
-            else
-                return EmissionPdf{};
-        });
+        const EmissionPdf pdf = with_light(
+            hit.light, [&](const auto& light) __attribute__((always_inline)) {
+                if constexpr (is_area<decltype(light)>) return light.emission_pdf(dot(direction, hit.normal));
+                else return EmissionPdf{};
+            });
         return pdf * data_.light_choice.probability(light_number(hit.light));
     }
 
@@ -162,12 +165,16 @@ public:
     }
 
     /// `EmittingLight::spread` of that light.
-    [[gnu::always_inline]] float spread(TypedIndex light, const SurfacePoint& at, const Vec3& wi, const Vec3& place) const {
-        return with_light(light, [&](const auto& l) __attribute__((always_inline)) { return l.spread(at, wi, place); });
+    [[gnu::always_inline]] float spread(TypedIndex light, const SurfacePoint& at, const Vec3& wi,
+                                        const Vec3& place) const {
+        return with_light(
+            light, [&](const auto& l) __attribute__((always_inline)) { return l.spread(at, wi, place); });
     }
     /// Whether that light is beyond the scene.
     [[gnu::always_inline]] bool infinite(TypedIndex light) const {
-        return with_light(light, [](const auto& l) __attribute__((always_inline)) { return std::remove_cvref_t<decltype(l)>::infinite; });
+        return with_light(
+            light,
+            [](const auto& l) __attribute__((always_inline)) { return std::remove_cvref_t<decltype(l)>::infinite; });
     }
 
     /// Lights are numbered by kind in the order of the list, then by position.
@@ -177,9 +184,10 @@ public:
     /// Calls `f(light)` with that light as its concrete type, and returns what it returns.
     template <class F>
     [[gnu::always_inline]] decltype(auto) with_light(TypedIndex light, F&& f) const {
-        return dispatch<sizeof...(L)>(light.kind(), [&](auto kind) __attribute__((always_inline)) -> decltype(auto) {
-            return f(std::get<kind>(data_.lights)[light.position()]);
-        });
+        return dispatch<sizeof...(L)>(
+            light.kind(), [&](auto kind) __attribute__((always_inline))->decltype(auto) {
+                return f(std::get<kind>(data_.lights)[light.position()]);
+            });
     }
 
     /// The luminous shapes and sources, one entry each.
@@ -203,13 +211,14 @@ private:
         const detail::MeshRecord& mesh = data_.meshes[hit.geometry];
         const Vec3 step = hit.distance * ray.direction;
         point.position = ray.origin + step;
-        // Twice the area long, at most 12: scaled so that its square neither overflows nor vanishes for the smallest triangles.
+        // Twice the area long, at most 12: scaled so that its square neither overflows nor vanishes for the smallest
+        // triangles.
         point.normal = normalize(hit.normal * 0x1p59f);
         point.shading_normal = point.normal;
         // Rounding of the sum above and of the distance, both across the surface, grows with what was added up.
         const Vec3 n = glm::abs(point.normal);
-        point.offset = mesh.intersection_error +
-                       gamma_bound(6) * (dot(n, glm::abs(ray.origin)) + max_component(glm::abs(step)));
+        point.offset =
+            mesh.intersection_error + gamma_bound(6) * (dot(n, glm::abs(ray.origin)) + max_component(glm::abs(step)));
         point.wo = -ray.direction;
         point.distance = hit.distance;
         point.material = mesh.material;
@@ -241,9 +250,8 @@ private:
 
     template <class F>
     void for_each_environment([[maybe_unused]] F&& f) const {
-        [&]<std::size_t... I>(std::index_sequence<I...>) {
-            (visit_environments<I>(f), ...);
-        }(std::index_sequence_for<L...>{});
+        [&]<std::size_t... I>(std::index_sequence<I...>) { (visit_environments<I>(f), ...); }
+        (std::index_sequence_for<L...>{});
     }
 
     template <std::size_t I, class F>

@@ -5,9 +5,9 @@
 #include <lightswitch/bsdf/bsdf.hpp>
 #include <lightswitch/core/dispatch.hpp>
 #include <lightswitch/core/table.hpp>
+#include <lightswitch/geometry/render_space.hpp>
 #include <lightswitch/light/light.hpp>
 #include <lightswitch/scene/description.hpp>
-#include <lightswitch/scene/render_space.hpp>
 
 #include <array>
 #include <string>
@@ -18,8 +18,8 @@ namespace lightswitch {
 
 /// The surface models of a scene.
 template <class... B>
-    requires(detail::RequireBsdf<B>::value && ...)
-struct Bsdfs {};
+requires(detail::RequireBsdf<B>::value&&...) struct Bsdfs {
+};
 /// The kinds of light of a scene.
 template <Light... L>
 struct Lights {};
@@ -29,11 +29,11 @@ struct Emitter {
     enum class Kind { environment, directional, point, surface };
 
     Kind kind = Kind::surface;
-    Rgb strength{0};       ///< radiance; of a point its intensity (render space), of a directional source its irradiance
-    Vec3 position{0};      ///< point, or centroid of a surface (render space)
-    Vec3 direction{0};     ///< unit, towards a directional source
-    Vec3 vector_area{0};   ///< of a surface: sum of normal * area (render space)
-    float area = 0;        ///< of a surface
+    Rgb strength{0};      ///< radiance; of a point its intensity (render space), of a directional source its irradiance
+    Vec3 position{0};     ///< point, or centroid of a surface (render space)
+    Vec3 direction{0};    ///< unit, towards a directional source
+    Vec3 vector_area{0};  ///< of a surface: sum of normal * area (render space)
+    float area = 0;       ///< of a surface
     std::size_t first_light = 0, light_count = 0;  ///< numbers of the lights that belong to it
 
     /// Whether no ray can meet it by chance.
@@ -50,8 +50,8 @@ struct SceneStatistics {
 
 namespace detail {
 
-/// What a hit on a triangle mesh needs beyond what Embree says. There is one per mesh and nothing per triangle, so that a hit
-/// costs no memory access that is not in a cache already.
+/// What a hit on a triangle mesh needs beyond what Embree says. There is one per mesh and nothing per triangle, so that
+/// a hit costs no memory access that is not in a cache already.
 struct MeshRecord {
     TypedIndex material;
     TypedIndex first_light;         ///< of the mesh's triangles, in their order; empty when it does not shine

@@ -59,8 +59,8 @@ inline Mesh tiles(int parity) {
     return mesh;
 }
 
-/// A wall across z = 0 with a doorway from `left` to `right` and up to `top`, for the rooms of `add_two_rooms`: it reaches into their
-/// floor, their ceiling and the walls beside it.
+/// A wall across z = 0 with a doorway from `left` to `right` and up to `top`, for the rooms of `add_two_rooms`: it
+/// reaches into their floor, their ceiling and the walls beside it.
 inline Mesh wall_with_doorway(double left, double right, double top, double thickness) {
     const double x[] = {-2.7, left, right, 2.7}, y[] = {-0.2, top, 2.8};
     const auto corner = [&](int i, int j, int side) { return DVec3(x[i], y[j], (side - 0.5) * thickness); };
@@ -78,8 +78,8 @@ inline Mesh wall_with_doorway(double left, double right, double top, double thic
     return mesh;
 }
 
-/// The rooms of `describe_ajar_door`, the door between them and the lamp. Surfaces that meet reach through each other, so that no
-/// light passes where they do.
+/// The rooms of `describe_ajar_door`, the door between them and the lamp. Surfaces that meet reach through each other,
+/// so that no light passes where they do.
 inline void add_two_rooms(LibraryDescription& scene) {
     const std::size_t plaster = scene.add(Lambert{{0.82f, 0.81f, 0.79f}});
     const std::size_t blue = scene.add(Lambert{{0.30f, 0.45f, 0.58f}});
@@ -121,7 +121,8 @@ inline void add_table(LibraryDescription& scene) {
 
 }  // namespace detail
 
-/// A tube around a (2,3) torus knot with smooth normals, `along` x `around` quadrilaterals, in a box of about 2 x 2 x 1.
+/// A tube around a (2,3) torus knot with smooth normals, `along` x `around` quadrilaterals, in a box of about 2 x 2 x
+/// 1.
 inline Mesh torus_knot(int along = 400, int around = 16, double tube = 0.16) {
     Mesh mesh;
     const auto curve = [](double t) {
@@ -149,12 +150,16 @@ inline Mesh torus_knot(int along = 400, int around = 16, double tube = 0.16) {
     return mesh;
 }
 
-/// The Cornell box with two blocks (Cornell University Program of Computer Graphics, colours in BT.709 as Mitsuba 3 ships
-/// them).
+/// The Cornell box with two blocks (Cornell University Program of Computer Graphics, colours in BT.709 as Mitsuba 3
+/// ships them).
 inline LibraryDescription describe_cornell_box() {
     LibraryDescription scene = detail::empty_room("cornell-box");
-    scene.add(cube(DMat4({0.286891, 0, 0.0877115, 0}, {0, 0.3, 0, 0}, {-0.0877115, 0, 0.286891, 0}, {0.335, -0.7, 0.38, 1})), 0);
-    scene.add(cube(DMat4({0.28491, 0, -0.0939491, 0}, {0, 0.61, 0, 0}, {0.0939491, 0, 0.28491, 0}, {-0.33, -0.4, -0.28, 1})), 0);
+    scene.add(
+        cube(DMat4({0.286891, 0, 0.0877115, 0}, {0, 0.3, 0, 0}, {-0.0877115, 0, 0.286891, 0}, {0.335, -0.7, 0.38, 1})),
+        0);
+    scene.add(
+        cube(DMat4({0.28491, 0, -0.0939491, 0}, {0, 0.61, 0, 0}, {0.0939491, 0, 0.28491, 0}, {-0.33, -0.4, -0.28, 1})),
+        0);
     return scene;
 }
 
@@ -172,16 +177,15 @@ inline LibraryDescription describe_cornell_spheres() {
 inline LibraryDescription describe_cornell_sculpture() {
     LibraryDescription scene = detail::empty_room("cornell-sculpture");
     const std::size_t mirror = scene.add(Conductor{.reflectance = Rgb(0.9f)});
-    const std::size_t bronze =
-        scene.add(RoughConductor{.alpha = 0.25f, .reflectance = Rgb(0.85f, 0.62f, 0.4f)});
+    const std::size_t bronze = scene.add(RoughConductor{.alpha = 0.25f, .reflectance = Rgb(0.85f, 0.62f, 0.4f)});
     scene.add(Sphere{{0.45, -0.65, 0.3}, 0.35}, mirror);
     const DMat4 place({0.5, 0, -0.2, 0}, {0, 0.54, 0, 0}, {0.2, 0, 0.5, 0}, {-0.35, -0.39, -0.3, 1});
     scene.add(torus_knot().transformed(place), bronze);
     return scene;
 }
 
-/// The sculpture, a sphere of glass and a matt one on a slab before an empty background, lit by two lamps outside of the picture: the
-/// scene in which outlines show.
+/// The sculpture, a sphere of glass and a matt one on a slab before an empty background, lit by two lamps outside of
+/// the picture: the scene in which outlines show.
 inline LibraryDescription describe_still_life() {
     LibraryDescription scene;
     scene.name = "still-life";
@@ -189,7 +193,9 @@ inline LibraryDescription describe_still_life() {
     const std::size_t bronze = scene.add(RoughConductor{.alpha = 0.25f, .reflectance = {0.85f, 0.62f, 0.4f}});
     const std::size_t lamp = scene.add(Lambert{Rgb(0)});
     scene.add(detail::block({-1.3, -0.12, -0.8}, {1.3, 0, 0.8}), stone);
-    scene.add(torus_knot().transformed(DMat4({0.5, 0, -0.2, 0}, {0, 0.54, 0, 0}, {0.2, 0, 0.5, 0}, {-0.52, 0.6, -0.1, 1})), bronze);
+    scene.add(
+        torus_knot().transformed(DMat4({0.5, 0, -0.2, 0}, {0, 0.54, 0, 0}, {0.2, 0, 0.5, 0}, {-0.52, 0.6, -0.1, 1})),
+        bronze);
     scene.add(Sphere{{0.25, 0.26, 0.4}, 0.26}, scene.add(Dielectric{.eta = 1.5f}));
     scene.add(Sphere{{0.76, 0.42, -0.15}, 0.42}, scene.add(Lambert{{0.12f, 0.45f, 0.42f}}));
     scene.add(quad({-0.4, 3, 0.2}, {0.4, 3, 0.2}, {0.4, 3, 1}, {-0.4, 3, 1}), lamp, Rgb(42, 37, 30));
@@ -200,9 +206,9 @@ inline LibraryDescription describe_still_life() {
     return scene;
 }
 
-/// Two rooms after the scene with the ajar door of Veach (1997, chapter 11): the only lamp is in the far one and shines away from
-/// the door, so that all light in the room of the camera has come through the gap, after one reflection at least. On the table are
-/// a sphere of glass, a mirror, a glossy and a diffuse one.
+/// Two rooms after the scene with the ajar door of Veach (1997, chapter 11): the only lamp is in the far one and shines
+/// away from the door, so that all light in the room of the camera has come through the gap, after one reflection at
+/// least. On the table are a sphere of glass, a mirror, a glossy and a diffuse one.
 inline LibraryDescription describe_ajar_door() {
     LibraryDescription scene;
     scene.name = "ajar-door";
@@ -214,8 +220,8 @@ inline LibraryDescription describe_ajar_door() {
     return scene;
 }
 
-/// A closed box with the camera inside, every wall of which reflects `albedo` and emits 1: every pixel is 1 / (1 - albedo), and up
-/// to depth d the sum of the first d powers of `albedo`.
+/// A closed box with the camera inside, every wall of which reflects `albedo` and emits 1: every pixel is 1 / (1 -
+/// albedo), and up to depth d the sum of the first d powers of `albedo`.
 inline LibraryDescription describe_furnace(float albedo = 0.5f) {
     LibraryDescription scene;
     scene.name = "furnace";
@@ -227,9 +233,7 @@ inline LibraryDescription describe_furnace(float albedo = 0.5f) {
 }
 
 /// `describe_cornell_box`, built.
-inline DiffuseScene cornell_box() {
-    return build_scene<DiffuseBsdfs, Lights<TriangleLight>>(describe_cornell_box());
-}
+inline DiffuseScene cornell_box() { return build_scene<DiffuseBsdfs, Lights<TriangleLight>>(describe_cornell_box()); }
 /// `describe_cornell_spheres`, built.
 inline FullScene cornell_spheres() { return build_scene<AllBsdfs, AllLights>(describe_cornell_spheres()); }
 /// `describe_cornell_sculpture`, built.

@@ -4,7 +4,7 @@
 // with a small scene that shows it: what a statistical test of renderers has to find. And pairs that are right, for
 // counting false alarms.
 
-#include <lightswitch/compare/estimator.hpp>
+#include <lightswitch/verify/estimator.hpp>
 
 #include <functional>
 #include <string_view>

@@ -2,8 +2,8 @@
 
 // The loop over pixels, with one mistake.
 
-#include <lightswitch/compare/estimator.hpp>
 #include <lightswitch/core/parallel.hpp>
+#include <lightswitch/verify/estimator.hpp>
 
 #include <memory>
 #include <vector>

@@ -2,10 +2,10 @@
 
 // The scenes of the catalogue, 16 x 16 pixels each unless they say otherwise, and the library's methods on them.
 
-#include <lightswitch/compare/estimator.hpp>
 #include <lightswitch/method/path_tracer.hpp>
 #include <lightswitch/method/path_tracer_nee.hpp>
 #include <lightswitch/scene/stock.hpp>
+#include <lightswitch/verify/estimator.hpp>
 
 namespace lightswitch::test {
 
