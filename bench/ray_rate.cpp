@@ -44,7 +44,7 @@ struct Recorder {
     auto environment_pdf(const auto& n, const auto& w) const { return scene.environment_pdf(n, w); }
     auto sample_emission(float c, const auto& u, const auto& v) const { return scene.sample_emission(c, u, v); }
     auto emission_pdf(const auto& h, const auto& d) const { return scene.emission_pdf(h, d); }
-    auto environment_emission_pdf() const { return scene.environment_emission_pdf(); }
+    auto environment_emission_pdf(const auto& d) const { return scene.environment_emission_pdf(d); }
     float spread(auto l, const auto& p, const auto& w, const auto& q) const { return scene.spread(l, p, w, q); }
     const auto& camera() const { return scene.camera(); }
     const auto& film() const { return scene.film(); }

@@ -30,7 +30,9 @@ run_samples() {
   run ../04_own_bsdf
   run ../05_comparison .
   run ../06_verify
-  run ../07_own_methods
+  run ../07_own_light
+  run ../08_own_camera
+  run ../09_own_methods
   run ../lightswitch compare spheres.exr spheres-path.exr --report spheres.html
   run ../lightswitch verify furnace --methods path-nee,bdpt --report furnace-verdict.html
 

@@ -23,9 +23,12 @@ std::string count_text(std::size_t count, std::string_view one, std::string_view
 
 std::string camera_text(const CameraDescription& camera) {
     constexpr std::string_view axes[] = {"x", "y", "the diagonal", "the smaller side", "the larger side"};
-    std::string text = fmt::format("{:.6g} degrees along {}, at {}, looking along {}", camera.fov,
-                                   axes[static_cast<std::size_t>(camera.fov_axis)],
-                                   vector_text(DVec3(camera.to_world[3])), vector_text(DVec3(camera.to_world[2])));
+    const bool orthographic = camera.projection == CameraDescription::Projection::orthographic;
+    std::string text = orthographic ? fmt::format("orthographic, {:.6g} wide", 2 * camera.half_width)
+                                    : fmt::format("{:.6g} degrees along {}", camera.fov,
+                                                  axes[static_cast<std::size_t>(camera.fov_axis)]);
+    text += fmt::format(", at {}, looking along {}", vector_text(DVec3(camera.to_world[3])),
+                        vector_text(DVec3(camera.to_world[2])));
     if (camera.aperture_radius > 0)
         text += fmt::format(", lens radius {:.6g} focused at {:.6g}", camera.aperture_radius, camera.focus_distance);
     if (camera.near_clip > 0 || camera.far_clip < std::numeric_limits<double>::infinity())
@@ -52,6 +55,7 @@ std::string lights_text(const SceneSummary& summary, const SceneStatistics& stat
     add(summary.luminous_spheres, "luminous sphere", "luminous spheres");
     add(summary.environments, "environment", "environments");
     add(summary.point_lights, "point light", "point lights");
+    add(summary.spot_lights, "spot light", "spot lights");
     add(summary.directional_lights, "directional light", "directional lights");
     if (kinds.empty()) return "none: only the method silhouette shows anything";
     return fmt::format("{}; {} to sample, a mesh being one per triangle", fmt::join(kinds, ", "), statistics.lights);

@@ -33,9 +33,9 @@ struct MaterialName {
     std::string operator()(const Conductor&) const { return "conductor"; }
     std::string operator()(const RoughConductor&) const { return "rough conductor"; }
     std::string operator()(const Dielectric&) const { return "dielectric"; }
-    template <class Inner>
-    std::string operator()(const TwoSided<Inner>& bsdf) const {
-        return "two-sided " + (*this)(bsdf.inner);
+    template <class Model>
+    std::string operator()(const Textured<Model>&) const {
+        return "textured " + (*this)(Model{});
     }
 };
 
@@ -53,12 +53,31 @@ SceneSummary summarize(const LibraryDescription& scene) {
         if (shape.emission) ++(mesh ? summary.luminous_meshes : summary.luminous_spheres);
     }
     for (const auto& placed : scene.sources) {
-        if (std::holds_alternative<EnvironmentSource>(placed.source)) ++summary.environments;
-        if (std::holds_alternative<PointSource>(placed.source)) ++summary.point_lights;
-        if (std::holds_alternative<DirectionalSource>(placed.source)) ++summary.directional_lights;
+        if (placed.source.is_environment()) ++summary.environments;
+        if (placed.source.get<PointSource>()) ++summary.point_lights;
+        if (placed.source.get<SpotSource>()) ++summary.spot_lights;
+        if (placed.source.get<DirectionalSource>()) ++summary.directional_lights;
     }
-    for (const auto& material : scene.materials) ++summary.materials[std::visit(MaterialName{}, material.bsdf)];
+    for (const auto& material : scene.materials)
+        ++summary.materials[(material.two_sided ? "two-sided " : "") + std::visit(MaterialName{}, material.bsdf)];
     return summary;
+}
+
+/// Gives the image another size. A part of a larger image stays about the same part.
+void resize(FilmDescription& film, int width, int height) {
+    const auto scale = [](int length, int from, int to) {
+        return static_cast<int>(std::lround(double(length) * to / from));
+    };
+    if (film.full_width > 0) {
+        film.crop_x = scale(film.crop_x, film.width, width);
+        film.full_width = std::max(film.crop_x + width, scale(film.full_width, film.width, width));
+    }
+    if (film.full_height > 0) {
+        film.crop_y = scale(film.crop_y, film.height, height);
+        film.full_height = std::max(film.crop_y + height, scale(film.full_height, film.height, height));
+    }
+    film.width = width;
+    film.height = height;
 }
 
 }  // namespace
@@ -68,13 +87,14 @@ LoadedScene load_scene(const SceneOptions& options, bool quiet) {
     LibraryDescription description = describe(options, notices);
     if (!quiet)
         for (const std::string& notice : notices) print_warning(notice);
-    FilmDescription& film = description.film;
+    const FilmDescription& film = description.film;
     if (options.size) {
-        film.width = options.size->width;
-        film.height = options.size->height;
+        resize(description.film, options.size->width, options.size->height);
     } else if (const int side = std::max(film.width, film.height); options.shrink_to > 0 && side > options.shrink_to) {
-        film.width = std::max(1, static_cast<int>(std::lround(double(film.width) * options.shrink_to / side)));
-        film.height = std::max(1, static_cast<int>(std::lround(double(film.height) * options.shrink_to / side)));
+        const auto shrunk = [&](int length) {
+            return std::max(1, static_cast<int>(std::lround(double(length) * options.shrink_to / side)));
+        };
+        resize(description.film, shrunk(film.width), shrunk(film.height));
     }
     if (options.filter) description.film.filter = *options.filter;
     SceneSummary summary = summarize(description);

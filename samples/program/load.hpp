@@ -15,7 +15,7 @@ struct SceneSummary {
     Size size;
     std::optional<int> max_depth, rr_depth, samples;
     std::size_t meshes = 0, luminous_meshes = 0, luminous_spheres = 0;
-    std::size_t environments = 0, point_lights = 0, directional_lights = 0;
+    std::size_t environments = 0, point_lights = 0, spot_lights = 0, directional_lights = 0;
     std::map<std::string, std::size_t> materials;  ///< by kind
     std::vector<std::filesystem::path> files;      ///< that were read
 };

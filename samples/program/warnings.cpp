@@ -31,7 +31,8 @@ void warn_about_clipping(const LoadedScene& loaded) {
 }  // namespace
 
 void warn_about_scene(const LoadedScene& loaded, std::string_view method) {
-    const std::size_t dirac = loaded.summary.point_lights + loaded.summary.directional_lights;
+    const std::size_t dirac =
+        loaded.summary.point_lights + loaded.summary.spot_lights + loaded.summary.directional_lights;
     if (dirac > 0 && cannot_make(method).dirac_light)
         print_warning(
             fmt::format("the method {} cannot see the scene's {} point and directional lights: what they light "

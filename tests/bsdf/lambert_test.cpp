@@ -1,5 +1,4 @@
 #include <lightswitch/bsdf/lambert.hpp>
-#include <lightswitch/bsdf/two_sided.hpp>
 
 #include "../support/relative.hpp"
 #include "bsdf_checks.hpp"
@@ -7,7 +6,7 @@
 using namespace lightswitch;
 using test::relative;
 
-static_assert(Bsdf<Lambert> && Bsdf<TwoSided<Lambert>>);
+static_assert(Bsdf<Lambert>);
 
 namespace {
 const double level = test::sidak(1e-6, 4);
@@ -17,8 +16,6 @@ const Lambert lambert{.reflectance = {0.25f, 0.5f, 0.75f}};
 TEST_CASE("lambert: sampling follows the density, on both sides of a two-sided surface") {
     test::check_density(lambert, test::direction(0.9), 1, level, 1);
     test::check_density(lambert, test::direction(1e-3), 1, level, 2);
-    test::check_density(TwoSided<Lambert>{lambert}, test::direction(0.3), 1, level, 3);
-    test::check_density(TwoSided<Lambert>{lambert}, test::direction(-0.3), 1, level, 4);
 }
 
 TEST_CASE("lambert: a missing cosine in the density is found") {
@@ -39,27 +36,17 @@ TEST_CASE("lambert: a missing cosine in the density is found") {
 
 TEST_CASE("lambert: energy, weights and reciprocity") {
     CHECK(test::check_albedo(lambert, test::direction(0.2), 1, 5) == relative(0.5, 1e-5));
-    CHECK(test::check_albedo(TwoSided<Lambert>{lambert}, test::direction(-0.2), 1, 5) == relative(0.5, 1e-5));
     test::check_sample_agrees_with_evaluate(lambert, test::direction(0.2), 1e-6, 1e-6);
     test::check_reciprocity(lambert);
-    test::check_reciprocity(TwoSided<Lambert>{lambert});
 }
 
-TEST_CASE("lambert: extremes") {
-    test::check_extremes(lambert);
-    test::check_extremes(TwoSided<Lambert>{lambert});
-}
+TEST_CASE("lambert: extremes") { test::check_extremes(lambert); }
 
-TEST_CASE("lambert: the back is black, unless two-sided") {
+TEST_CASE("lambert: the back is black") {
     const Vec3 up = test::direction(0.5), down = test::direction(-0.5);
     CHECK(is_black(lambert.evaluate(down, down, Transport::radiance).value));
     CHECK(is_black(lambert.evaluate(up, down, Transport::radiance).value));
     CHECK_FALSE(lambert.sample(down, Vec3(0.3f), Transport::radiance));
-    const TwoSided<Lambert> both{lambert};
-    CHECK(both.evaluate(down, down, Transport::radiance).value == lambert.evaluate(up, up, Transport::radiance).value);
-    CHECK(is_black(both.evaluate(up, down, Transport::radiance).value));
-    CHECK(is_black(both.evaluate(down, up, Transport::radiance).value));
-    CHECK(both.sample(down, Vec3(0.3f), Transport::radiance)->wi.z < 0);
 }
 
 TEST_CASE("lambert: impossible parameters are explained") {
@@ -67,6 +54,6 @@ TEST_CASE("lambert: impossible parameters are explained") {
     CHECK(Lambert{.reflectance = Rgb(1.5f, 0, 0)}.problem().find("reflectance has a component of 1.5") !=
           std::string::npos);
     CHECK(Lambert{.reflectance = Rgb(0, -0.1f, 0)}.problem() != "");
-    CHECK(TwoSided<Lambert>{{.reflectance = Rgb(0, 0, NAN)}}.problem() != "");
-    CHECK(TwoSided<Lambert>{lambert}.phong().diffuse == lambert.reflectance);
+    CHECK(Lambert{.reflectance = Rgb(0, 0, NAN)}.problem() != "");
+    CHECK(lambert.phong().diffuse == lambert.reflectance);
 }

@@ -1,5 +1,4 @@
 #include <lightswitch/bsdf/rough_conductor.hpp>
-#include <lightswitch/bsdf/two_sided.hpp>
 
 #include "../support/relative.hpp"
 #include "bsdf_checks.hpp"
@@ -8,7 +7,7 @@ using namespace lightswitch;
 using test::direction;
 using test::relative;
 
-static_assert(Bsdf<RoughConductor> && Bsdf<TwoSided<RoughConductor>>);
+static_assert(Bsdf<RoughConductor>);
 
 namespace {
 
@@ -89,14 +88,6 @@ TEST_CASE("rough conductor: sampling follows the density") {
     test::check_density(metal(0.001f), direction(0.5), 0.001, level, seed++);
 }
 
-TEST_CASE("rough conductor: sampling follows the density on the back of a two-sided surface") {
-    std::uint32_t seed = 101;
-    for (const float alpha : alphas)
-        for (const double cosine : {-0.7, -0.05})
-            test::check_density(TwoSided<RoughConductor>{metal(alpha)}, direction(cosine), double(alpha), level,
-                                seed++);
-}
-
 TEST_CASE("rough conductor: a density without the Jacobian of reflection, or without masking, is found") {
     const RoughConductor m = metal(0.3f);
     const Vec3 wo = direction(0.4);
@@ -142,7 +133,6 @@ TEST_CASE("rough conductor: a sample's weight and density are those of evaluate,
 TEST_CASE("rough conductor: reciprocity") {
     for (const float alpha : alphas) {
         test::check_reciprocity(metal(alpha));
-        test::check_reciprocity(TwoSided<RoughConductor>{metal(alpha)});
     }
 }
 
@@ -161,7 +151,6 @@ TEST_CASE("rough conductor: extremes") {
         CAPTURE(alpha);
         test::check_extremes(RoughConductor{.alpha = alpha});
     }
-    test::check_extremes(TwoSided<RoughConductor>{metal(0.05f)}, 0.9f);
 }
 
 TEST_CASE("rough conductor: impossible parameters are explained") {

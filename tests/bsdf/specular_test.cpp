@@ -1,6 +1,5 @@
 #include <lightswitch/bsdf/conductor.hpp>
 #include <lightswitch/bsdf/dielectric.hpp>
-#include <lightswitch/bsdf/two_sided.hpp>
 
 #include "../support/relative.hpp"
 #include "bsdf_checks.hpp"
@@ -10,8 +9,9 @@ using test::direction;
 using test::mirrored;
 using test::relative;
 
-static_assert(Bsdf<Conductor> && Bsdf<TwoSided<Conductor>> && Bsdf<Dielectric>);
-static_assert(Conductor::specular && TwoSided<Conductor>::specular && Dielectric::specular);
+static_assert(Bsdf<Conductor> && Bsdf<Dielectric>);
+static_assert(Conductor::specular && Dielectric::specular);
+static_assert(transmits<Dielectric> && !transmits<Conductor>);
 
 namespace {
 const Conductor silver{.eta = {0.155f, 0.117f, 0.138f}, .k = {4.83f, 3.12f, 2.15f}, .reflectance = {0.9f, 0.8f, 0.7f}};
@@ -32,11 +32,6 @@ TEST_CASE("conductor: mirror direction, Fresnel's weight, front only") {
                   relative(silver.reflectance[c] * fresnel_conductor(wo.z, silver.eta[c], silver.k[c]), 1e-5));
         CHECK(is_black(silver.evaluate(wo, s->wi, Transport::radiance).value));
         CHECK_FALSE(silver.sample(direction(-cosine), Vec3(0.5f), Transport::radiance));
-
-        const auto behind = TwoSided<Conductor>{silver}.sample(direction(-cosine), Vec3(0.5f), Transport::radiance);
-        REQUIRE(behind);
-        CHECK(behind->wi == mirrored(direction(-cosine)));
-        CHECK(behind->weight == s->weight);
     }
     CHECK(Conductor{}.sample(direction(0.3), Vec3(0.5f), Transport::radiance)->weight == Rgb(1));
     CHECK_FALSE(silver.sample(Vec3(1, 0, 0), Vec3(0.5f), Transport::radiance));
@@ -114,7 +109,6 @@ TEST_CASE("dielectric: radiance is scaled by 1 / eta^2, importance is not, and a
 TEST_CASE("specular models: extremes") {
     test::check_extremes(Conductor{});
     test::check_extremes(silver, 0.9f);
-    test::check_extremes(TwoSided<Conductor>{silver}, 0.9f);
     test::check_extremes(Dielectric{}, 2.25f);
     test::check_extremes(Dielectric{.eta = 0.5f}, 4);
     test::check_extremes(Dielectric{.eta = 1});

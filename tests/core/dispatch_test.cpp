@@ -32,8 +32,8 @@ TEST_CASE("dispatch: positions of types in a list") {
     static_assert(index_of<float, int, float>() == 1);
     static_assert(index_of<char, int, float>() == 2);
     static_assert(index_of<int>() == 0);
-    static_assert(contains<float, int, float> && !contains<char, int, float> && !contains<int>);
-    static_assert(!contains<const int, int>);
+    static_assert(is_one_of<float, int, float> && !is_one_of<char, int, float> && !is_one_of<int>);
+    static_assert(!is_one_of<const int, int>);
 }
 
 TEST_CASE("typed index: the limits, and empty") {

@@ -173,7 +173,8 @@ TEST_CASE("emission: a point sends paths everywhere, a sun and a sky through all
                 CHECK(glm::length(d - glm::normalize(DVec3(0.3, -1, 0.2))) < 1e-6);
                 cube.add(r2, angle, std::fmod(16 * r2, 1.0), std::fmod(16 * angle, 1.0));
             } else {
-                CHECK(double(scene.environment_emission_pdf().value) == relative(double(e.pdf.value), 1e-5));
+                CHECK(double(scene.environment_emission_pdf(-e.ray.direction).value) ==
+                      relative(double(e.pdf.value), 1e-5));
                 cube.add(z, around, r2, angle);
             }
         }
@@ -192,17 +193,19 @@ TEST_CASE("emission: the density includes the choice among lights") {
         const LightEmission e = emit(scene, random);
         const std::size_t number = scene.light_number(e.light);
         chosen[number] += 1;
+        SurfacePoint upright;
+        upright.normal = {0, 0, 1};
         const double alone = scene.with_light(e.light, [&](const auto& light) {
             if constexpr (AreaLight<std::remove_cvref_t<decltype(light)>>)
-                return double(light.emission_pdf(e.cosine).value);
+                return double(light.emission_pdf(upright, {std::sqrt(1 - e.cosine * e.cosine), 0, e.cosine}).value);
             else if constexpr (EnvironmentLight<std::remove_cvref_t<decltype(light)>>)
-                return double(light.emission_pdf().value);
+                return double(light.emission_pdf(-e.ray.direction).value);
             else return double(light.emit({0.5f, 0.5f}, {0.5f, 0.5f}).pdf.value);
         });
         claimed[number] = double(e.pdf.value) / alone;
         if (!e.dirac) {
             const double density = [&] {
-                if (scene.infinite(e.light)) return double(scene.environment_emission_pdf().value);
+                if (scene.infinite(e.light)) return double(scene.environment_emission_pdf(-e.ray.direction).value);
                 SurfacePoint at;
                 at.light = e.light;
                 at.normal = {0, 0, 1};
@@ -233,7 +236,7 @@ TEST_CASE("emission: what arrives at a surface is what light sampling finds ther
         };
         const double area = 0.36;
         Mean sampled, emitted;
-        const TypedIndex receiving = at({0.5f, 0.5f})->material;
+        const MaterialIndex receiving = at({0.5f, 0.5f})->material;
         for (int i = 0; i < 300000; ++i) {
             const auto point = at(random.next_2d());
             REQUIRE(point);

@@ -68,8 +68,8 @@ TEST_CASE("light selection: by flux and evenly, and the probabilities are those 
     CHECK(dirac / double(steps) == relative(expected[1] + expected[2], 1e-3));
 
     std::size_t number = 0;
-    for (std::size_t kind = 0; kind < 5; ++kind) {
-        const std::size_t of_kind[] = {1, 1, 1, 2, 4};
+    for (std::size_t kind = 0; kind < 7; ++kind) {
+        const std::size_t of_kind[] = {1, 0, 1, 1, 0, 2, 4};
         for (std::size_t position = 0; position < of_kind[kind]; ++position, ++number)
             CHECK(scene.light_number(TypedIndex(kind, position)) == number);
     }

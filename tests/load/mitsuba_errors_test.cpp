@@ -104,7 +104,7 @@ TEST_CASE("what a scene file cannot say is refused with file, line and element")
          "room.xml:4: <alias id=\"a\">: the attribute \"as\" is missing"},
         {"<bsdf type=\"diffuse\" id=\"a\"/>\n<alias id=\"a\" as=\"b\"/>\n<bsdf type=\"diffuse\" id=\"b\"/>",
          "room.xml:5: <bsdf type=\"diffuse\">: the id \"b\" is already taken in line 3"},
-        {"<texture type=\"bitmap\"/>", "room.xml:3: <texture type=\"bitmap\">: elements of this kind are not"},
+        {"<texture type=\"bitmap\"/>", "room.xml:3: <texture type=\"bitmap\">: the parameter \"filename\" is missing"},
         {"<float name=\"x\" value=\"1\"/>", "room.xml:3: <scene>: unknown parameter \"x\""},
         {"<film type=\"hdrfilm\"/>", "room.xml:3: <film type=\"hdrfilm\">: does not belong into <scene>"},
         {"<integrator type=\"ptracer\"/>",
@@ -227,7 +227,20 @@ TEST_CASE("what a scene file cannot say is refused with file, line and element")
         {"<bsdf type=\"diffuse\"><spectrum name=\"reflectance\" filename=\"a.spd\"/></bsdf>",
          "unknown attribute \"filename\""},
         {"<bsdf type=\"diffuse\"><texture name=\"reflectance\" type=\"bitmap\"/></bsdf>",
-         "elements of this kind are not supported here"},
+         "<texture type=\"bitmap\">: the parameter \"filename\" is missing"},
+        {"<bsdf type=\"diffuse\"><texture name=\"reflectance\" type=\"bitmap\"><string name=\"filename\" "
+         "value=\"no.png\"/></texture></bsdf>",
+         "no.png: no such file"},
+        {"<bsdf type=\"diffuse\"><texture name=\"reflectance\" type=\"wood\"/></bsdf>",
+         "unknown type \"wood\"; known are bitmap and checkerboard"},
+        {"<bsdf type=\"diffuse\"><texture name=\"colour\" type=\"checkerboard\"/></bsdf>",
+         "does not belong into <bsdf type=\"diffuse\">"},
+        {"<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.5\"/><texture name=\"reflectance\" "
+         "type=\"checkerboard\"/></bsdf>",
+         "the parameter is given twice"},
+        {"<bsdf type=\"diffuse\"><ref name=\"reflectance\" id=\"t\"/></bsdf>", "there is no element with the id \"t\""},
+        {"<bsdf type=\"diffuse\" id=\"t\"/><bsdf type=\"diffuse\"><ref name=\"reflectance\" id=\"t\"/></bsdf>",
+         "but only a <texture> can be referred to"},
         {"<bsdf type=\"conductor\"><string name=\"material\" value=\"Au\"/></bsdf>",
          "give eta and k as <rgb> instead of \"Au\""},
         {"<bsdf type=\"roughconductor\"/>",
@@ -246,7 +259,8 @@ TEST_CASE("what a scene file cannot say is refused with file, line and element")
          "an index of refraction must be above 0"},
 
         {"<emitter type=\"area\"/>", "an area light must be inside a <shape>"},
-        {"<emitter type=\"envmap\"/>", "unknown type \"envmap\"; known are point"},
+        {"<emitter type=\"envmap\"/>", "the parameter \"filename\" is missing"},
+        {"<emitter type=\"sunsky\"/>", "unknown type \"sunsky\"; known are point, spot"},
         {"<emitter type=\"point\"><point name=\"position\" value=\"1\"/><transform name=\"to_world\"/></emitter>",
          "give either position or to_world"},
         {"<emitter type=\"directional\"><vector name=\"direction\" value=\"1\"/><transform "
@@ -274,7 +288,7 @@ TEST_CASE("what a camera cannot be is refused") {
          "near_clip must be smaller than far_clip"},
         {"<float name=\"focus_distance\" value=\"0\"/>", "must be above 0"},
         {"<float name=\"aperture_radius\" value=\"1\"/>", "unknown parameter \"aperture_radius\""},
-        {"<float name=\"principal_point_offset_x\" value=\"0.1\"/>", "is not supported: set it to 0"},
+        {"<float name=\"principal_point_offset_z\" value=\"0.1\"/>", "unknown parameter \"principal_point_offset_z\""},
         {"<transform name=\"to_world\"><scale value=\"2\"/></transform>", "must not contain a scale or shear"},
         {"<transform name=\"to_world\"><matrix value=\"1 .1 0 0 1 0 0 0 1\"/></transform>",
          "must not contain a scale or shear"},
@@ -282,8 +296,8 @@ TEST_CASE("what a camera cannot be is refused") {
         {"<film type=\"specfilm\"/>", "unknown type \"specfilm\"; known are hdrfilm"},
         {film("<integer name=\"width\" value=\"-5\"/>"), "-5 is not between 0 and 2147483647"},
         {film("<integer name=\"width\" value=\"99999999999\"/>"), "99999999999 is not between"},
-        {film("<integer name=\"crop_width\" value=\"5\"/>"), "cropping is not supported"},
-        {film("<integer name=\"crop_offset_x\" value=\"5\"/>"), "cropping is not supported"},
+        {film("<integer name=\"crop_width\" value=\"5000\"/>"), "the crop window is not within the film"},
+        {film("<integer name=\"crop_offset_x\" value=\"5\"/>"), "the crop window is not within the film"},
         {film("<boolean name=\"sample_border\" value=\"true\"/>"), "is not supported: set it to false"},
         {film("<string name=\"pixel_format\" value=\"rgba\"/>"),
          "<string name=\"pixel_format\">: \"rgba\" is not supported: use \"rgb\""},
@@ -307,6 +321,6 @@ TEST_CASE("what a camera cannot be is refused") {
             "<scene version=\"3.0.0\"><sensor type=\"thinlens\"><float name=\"aperture_radius\" value=\"-1\"/></sensor>"
             "</scene>"),
         "must not be negative"));
-    CHECK(contains(error_of("<scene version=\"3.0.0\"><sensor type=\"orthographic\"/></scene>"),
-                   "known are perspective and thinlens"));
+    CHECK(contains(error_of("<scene version=\"3.0.0\"><sensor type=\"fisheye\"/></scene>"),
+                   "known are perspective, thinlens and orthographic"));
 }

@@ -78,7 +78,7 @@ TEST_CASE("the reference scenes load with their values") {
     CHECK(box.materials.size() == 4);  // white serves two shapes
     CHECK(box.shapes[1].material == box.shapes[4].material);
     CHECK(box.shapes[0].emission == Rgb(18.387f, 13.9873f, 6.75357f));
-    CHECK(std::get<TwoSided<Lambert>>(box.materials[0].bsdf).inner.reflectance == Rgb(0.885809f, 0.698859f, 0.666422f));
+    CHECK(std::get<Lambert>(box.materials[0].bsdf).reflectance == Rgb(0.885809f, 0.698859f, 0.666422f));
     CHECK(box.shapes[4].origin.line == 18);
     CHECK(box.shapes[4].origin.element == "<shape type=\"obj\">");
     CHECK(std::get<Mesh>(box.shapes[4].geometry).normals.empty());
@@ -103,7 +103,7 @@ TEST_CASE("the reference scenes load with their values") {
 
     const auto mis = load_mitsuba(folder / "veach-mis.xml");
     CHECK(mis.shapes.size() == 10);
-    CHECK(std::get<TwoSided<RoughConductor>>(mis.materials[mis.shapes[5].material].bsdf).inner.alpha == 0.005f);
+    CHECK(std::get<RoughConductor>(mis.materials[mis.shapes[5].material].bsdf).alpha == 0.005f);
 }
 
 TEST_CASE("what a scene leaves out has Mitsuba's defaults") {
@@ -158,18 +158,15 @@ TEST_CASE("BSDFs are read with their parameters") {
     CHECK(glass.eta == 1.31f);
     CHECK(glass.reflectance == Rgb(0.5f));
     CHECK(glass.transmittance == Rgb(0.25f));
-    const auto rough =
-        std::get<TwoSided<RoughConductor>>(
-            bsdf("<bsdf type=\"twosided\"><bsdf type=\"roughconductor\"><string name=\"distribution\" value=\"ggx\"/>"
-                 "<float name=\"alpha_u\" value=\"0.3\"/><float name=\"alpha_v\" value=\"0.3\"/><rgb name=\"eta\" "
-                 "value=\"1,2,3\"/>"
-                 "<float name=\"k\" value=\"4\"/><boolean name=\"sample_visible\" value=\"false\"/></bsdf></bsdf>"))
-            .inner;
+    const auto rough = std::get<RoughConductor>(
+        bsdf("<bsdf type=\"twosided\"><bsdf type=\"roughconductor\"><string name=\"distribution\" value=\"ggx\"/>"
+             "<float name=\"alpha_u\" value=\"0.3\"/><float name=\"alpha_v\" value=\"0.3\"/><rgb name=\"eta\" "
+             "value=\"1,2,3\"/>"
+             "<float name=\"k\" value=\"4\"/><boolean name=\"sample_visible\" value=\"false\"/></bsdf></bsdf>"));
     CHECK(rough.alpha == 0.3f);
     CHECK(rough.eta == Rgb(1, 2, 3));
     CHECK(rough.k == Rgb(4));
-    CHECK(
-        std::holds_alternative<TwoSided<Conductor>>(bsdf("<bsdf type=\"twosided\"><bsdf type=\"conductor\"/></bsdf>")));
+    CHECK(std::holds_alternative<Conductor>(bsdf("<bsdf type=\"twosided\"><bsdf type=\"conductor\"/></bsdf>")));
 }
 
 TEST_CASE("references go forward, and into other objects") {
@@ -179,9 +176,10 @@ TEST_CASE("references go forward, and into other objects") {
         "<bsdf type=\"twosided\" id=\"later\"><bsdf type=\"diffuse\" id=\"inner\"><float name=\"reflectance\" "
         "value=\"0.7\"/></bsdf>"
         "</bsdf>");
-    CHECK(std::get<TwoSided<Lambert>>(forward.materials[forward.shapes[0].material].bsdf).inner.reflectance ==
-          Rgb(0.7f));
+    CHECK(std::get<Lambert>(forward.materials[forward.shapes[0].material].bsdf).reflectance == Rgb(0.7f));
     CHECK(std::get<Lambert>(forward.materials[forward.shapes[1].material].bsdf).reflectance == Rgb(0.7f));
+    CHECK(forward.materials[forward.shapes[0].material].two_sided);
+    CHECK_FALSE(forward.materials[forward.shapes[1].material].two_sided);
     CHECK(forward.materials.size() == 2);
     CHECK(forward.materials[0].origin.line == 2);
     // Materials that nothing uses do not widen the scene.
@@ -335,17 +333,17 @@ TEST_CASE("emitters are read with their parameters") {
         "up=\"0,1,0\"/>"
         "</transform></emitter><emitter type=\"constant\"><spectrum name=\"radiance\" value=\"2\"/></emitter>");
     REQUIRE(result.sources.size() == 6);
-    const auto point = std::get<PointSource>(result.sources[0].source);
+    const PointSource point = *result.sources[0].source.get<PointSource>();
     CHECK(point.position == DVec3(1, 2, 3));
     CHECK(point.intensity == Rgb(4));
     CHECK(result.sources[0].origin.element == "<emitter type=\"point\">");
-    CHECK(std::get<PointSource>(result.sources[1].source).position == DVec3(0, 7, 0));
-    CHECK(std::get<DirectionalSource>(result.sources[2].source).direction == DVec3(0, -2, 0));
-    CHECK(std::get<DirectionalSource>(result.sources[2].source).irradiance == Rgb(5));
-    CHECK(std::get<DirectionalSource>(result.sources[3].source).direction == DVec3(0, 0, 1));
-    CHECK(std::get<DirectionalSource>(result.sources[4].source).direction == DVec3(1, 0, 0));
+    CHECK(result.sources[1].source.get<PointSource>()->position == DVec3(0, 7, 0));
+    CHECK(result.sources[2].source.get<DirectionalSource>()->direction == DVec3(0, -2, 0));
+    CHECK(result.sources[2].source.get<DirectionalSource>()->irradiance == Rgb(5));
+    CHECK(result.sources[3].source.get<DirectionalSource>()->direction == DVec3(0, 0, 1));
+    CHECK(result.sources[4].source.get<DirectionalSource>()->direction == DVec3(1, 0, 0));
     // Computed by Mitsuba 3.9.1 (scalar_rgb).
-    const Rgb white = std::get<EnvironmentSource>(result.sources[5].source).radiance;
+    const Rgb white = result.sources[5].source.get<EnvironmentSource>()->radiance;
     CHECK(white.x == relative(2.40959, 1e-5));
     CHECK(white.y == relative(1.89658, 1e-5));
     CHECK(white.z == relative(1.81783, 1e-5));

@@ -50,7 +50,8 @@ TEST_CASE("all forms of OBJ corners are read") {
     CHECK(parse(head + "f 1/1 2/1 3/1\nf 1/2 3/1 4/1").positions.size() == 5);
     CHECK(parse(head + "f 1//1 2//1 3//1\nf 1//2 3//1 4//1").positions.size() == 5);
     const Mesh flat = parse(head + "f 1/1/1 2/1/1 3/1/1\nf 1/2/2 3 4/1/1", FileNormals::ignore);
-    CHECK(flat.positions.size() == 4);
+    CHECK(flat.positions.size() == 6);
+    CHECK(flat.uvs.size() == 6);
     CHECK(flat.normals.empty());
 }
 

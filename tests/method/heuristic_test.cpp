@@ -106,7 +106,7 @@ TEST_CASE("on a diffuse plane Phong is exact for point and directional lights, a
         const Image ambient = render(scene, Phong{}, {.samples = 256});
         const double added = ambient.mean().y - phong.mean().y;
         CHECK(added >= 0);
-        CHECK((added > 0) == !std::holds_alternative<EnvironmentSource>(source));
+        CHECK((added > 0) == !Source(source).is_environment());
         for (std::size_t i = 0; i < ambient.pixels().size(); ++i)
             CHECK(double(ambient.pixels()[i].y - phong.pixels()[i].y) == relative(added, 1e-3));
     };

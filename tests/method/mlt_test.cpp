@@ -266,8 +266,14 @@ TEST_CASE("mlt: an iteration that is stopped can be made again") {
     RenderCounts counts;
     const auto with_frame = [&](std::uint64_t iteration, std::stop_source* stop, const auto& f) {
         const Interrupted executor{&calls_left, stop};
-        Frame<FullScene, Interrupted> frame(scene, film, executor, scene.film().filter, Sampling::sobol, 0, iteration,
-                                            stop ? stop->get_token() : std::stop_token(), counts);
+        Frame<FullScene, Interrupted> frame({.scene = scene,
+                                             .film = film,
+                                             .executor = executor,
+                                             .sampling = Sampling::sobol,
+                                             .seed = 0,
+                                             .iteration = iteration,
+                                             .stop = stop ? stop->get_token() : std::stop_token(),
+                                             .counts = counts});
         return f(frame);
     };
     auto state = with_frame(Frame<FullScene, Interrupted>::before_the_first, nullptr,

@@ -18,8 +18,8 @@ struct Reference {
 };
 
 template <class SceneType>
-Reference<SceneType> reference(SceneType scene, int samples) {
-    TileEstimates tiles = load_tiles(LIGHTSWITCH_TESTS_DIR "/data/reference/" + scene.name() + ".txt");
+Reference<SceneType> reference(SceneType scene, int samples, const std::string& folder = "reference") {
+    TileEstimates tiles = load_tiles(LIGHTSWITCH_TESTS_DIR "/data/" + folder + "/" + scene.name() + ".txt");
     return {std::move(scene), std::move(tiles), samples};
 }
 inline auto cornell_box() { return reference(stock::cornell_box(), 3072); }

@@ -205,7 +205,7 @@ TEST_CASE("a scene file: its requests hold unless the command line says otherwis
     CHECK(number(plain.out, "max_depth") == 3);
     CHECK(number(plain.out, "width") == 8);
     CHECK(plain.prints("\"scene\": \"room.xml\""));
-    CHECK(plain.prints("\"scene_type\": \"diffuse-sky\""));
+    CHECK(plain.prints("\"scene_type\": \"full\""));
     const Ended other = run(workspace, {"render", "room.xml", "-D", "spp=9", "--spp", "2", "--max-depth", "-1",
                                         "--size", "5x4", "--stats", "-"});
     CHECK(number(other.out, "samples_per_pixel") == 2);

@@ -1,5 +1,5 @@
-// write_report small|large|single|words FILE: writes a report that browser.py looks at. Its pixel values are exact in the
-// report's encoding.
+// write_report small|large|single|words FILE: writes a report that browser.py looks at. Its pixel values are exact in
+// the report's encoding.
 
 #include <lightswitch/report/report.hpp>
 

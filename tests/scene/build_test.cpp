@@ -39,7 +39,7 @@ Sphere& sphere(GreyDescription& scene) { return std::get<Sphere>(scene.shapes[1]
 template <class T>
 T& source(GreyDescription& scene) {
     for (auto& placed : scene.sources)
-        if (auto* found = std::get_if<T>(&placed.source)) return *found;
+        if (auto* found = placed.source.get<T>()) return *found;
     throw std::logic_error("no such source");
 }
 
@@ -176,12 +176,21 @@ TEST_CASE("build: a scene type without room for something says so") {
 }
 
 TEST_CASE("build: more materials or lights of one kind than can be numbered are refused") {
-    const std::size_t most = (std::size_t{1} << 27) - 1;
-    const TypedIndex last = detail::checked_index(30, most, here, "lights");
+    const std::size_t most = (std::size_t{1} << 27) - 1, most_materials = (std::size_t{1} << 26) - 1;
+    const TypedIndex last(30, most);
     CHECK(last);
     CHECK(last.kind() == 30);
     CHECK(last.position() == most);
-    CHECK(message_of([&] { detail::checked_index(0, most + 1, here, "lights"); }) ==
+    for (const bool both : {false, true}) {
+        const MaterialIndex material(30, most_materials, both);
+        CHECK(material.kind() == 30);
+        CHECK(material.position() == most_materials);
+        CHECK(material.two_sided() == both);
+    }
+    CHECK(TypedIndex::max_position == most);
+    CHECK(MaterialIndex::max_position == most_materials);
+    CHECK_NOTHROW(detail::check_count(most, most, here, "lights"));
+    CHECK(message_of([&] { detail::check_count(most + 1, most, here, "lights"); }) ==
           here.prefix() + "the scene has more than 134217728 lights of one kind");
 }
 

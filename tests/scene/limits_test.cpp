@@ -84,7 +84,7 @@ Spoil small_ball(double radius, std::optional<Rgb> emission) {
 
 TEST_CASE("limits: a camera that is too far away is refused") {
     // The ball's bounding box has a diagonal of 2 sqrt(3).
-    const double farthest = Camera::farthest * std::sqrt(3.0);
+    const double farthest = PerspectiveCamera::farthest * std::sqrt(3.0);
     CHECK(refusal(camera_at(4)).empty());
     CHECK(refusal(camera_at(1e9)).empty());
     CHECK(refusal(camera_at(0.999 * farthest)).empty());
@@ -102,7 +102,7 @@ TEST_CASE("limits: a camera that is too far away is refused") {
 }
 
 TEST_CASE("limits: at the farthest a camera still sees what it should") {
-    const double distance = 0.999 * Camera::farthest * std::sqrt(3.0);
+    const double distance = 0.999 * PerspectiveCamera::farthest * std::sqrt(3.0);
     GreyDescription description = ball(0);
     camera_at(distance)(description, 1);
     const GreyScene scene = build_grey(description);

@@ -1,6 +1,6 @@
 // Where the camera sees a point: the inverse of its rays.
 
-#include <lightswitch/scene/camera.hpp>
+#include <lightswitch/camera/perspective_camera.hpp>
 
 #include "../support/chi_square.hpp"
 #include "../support/relative.hpp"
@@ -52,7 +52,7 @@ std::vector<Setup> setups() {
 /// With geometry in a cube of that half side.
 struct Built {
     RenderSpace space;
-    Camera camera;
+    PerspectiveCamera camera;
 
     explicit Built(const CameraDescription& description, double half = 8)
         : space(DVec3(-half), DVec3(half)), camera(description, film(), space, std::sqrt(3.0) * space.length(half)) {}

@@ -28,6 +28,8 @@ expect_compile_failure(render_no_scene own_types.cpp 12 "${no_scene}")
 expect_compile_failure(render_any_scene own_types.cpp 13 "what is rendered must be a scene.*std::visit")
 expect_compile_failure(verify_no_scene own_types.cpp 14 "${no_scene}")
 expect_compile_failure(render_any_method own_types.cpp 15 "${method_needs}.*std::visit")
+expect_compile_failure(own_light_source own_types.cpp 16 "a light in a description also needs .light\\(const RenderSpace")
+expect_compile_failure(own_camera_rays own_types.cpp 17 "methods that connect light paths to the camera")
 
 foreach(option IN ITEMS -ffast-math -ffinite-math-only)
   expect_compile_failure(refused${option} fast_math.cpp 1 "lightswitch: compiled with -ffast-math.*LIGHTSWITCH_ALLOW_FAST_MATH"

@@ -98,6 +98,27 @@ ls::Verdict verdict(const ls::DiffuseScene& scene) {
 ls::Image image(const ls::DiffuseScene& scene, const std::variant<ls::PathTracer>& any) {
     return std::visit([&](const auto& method) { return ls::render(scene, RIGHT_OR_WRONG(method, any)); }, any);
 }
+#elif CASE == 16
+struct Glow {
+    static constexpr bool infinite = false;
+    double power() const { return 1; }
+    ls::LightSample sample(const ls::SurfacePoint&, const ls::Vec2&) const { return {}; }
+    UNLESS_FORGOTTEN(Glow light(const ls::RenderSpace&, double) const { return *this; })
+};
+void add(ls::LibraryDescription& description) { description.add(Glow{}); }
+#elif CASE == 17
+#include <lightswitch/method/bdpt.hpp>
+#include <lightswitch/method/path_tracer_nee.hpp>
+struct Pinhole {
+    ls::Ray ray(const ls::Vec2&, const ls::Vec2&) const { return {}; }
+    bool has_lens() const { return false; }
+    int width() const { return 4; }
+    int height() const { return 4; }
+};
+// A camera of rays alone serves methods that trace from it, and no others.
+ls::Image image(const ls::DiffuseScene& scene) {
+    return ls::render(scene.with_camera(Pinhole{}), RIGHT_OR_WRONG(ls::PathTracerNee, ls::Bdpt){});
+}
 #else
-#error "CASE must be 1 to 15"
+#error "CASE must be 1 to 17"
 #endif

@@ -24,7 +24,7 @@ nothing() {
 floors() {
   grep -rE --include='*.hpp' '^#include <lightswitch/' . | awk -F'[/:<>]' '
     BEGIN {
-      number = split("core | geometry | bsdf embree film light | scene | compare load render | method | verify | report", names, " ")
+      number = split("core | geometry | bsdf embree film light | camera texture | scene | compare load render | method | verify | report", names, " ")
       level = 1
       for (i = 1; i <= number; ++i)
         if (names[i] == "|") ++level
@@ -42,7 +42,7 @@ floors() {
 case $rule in
   one_rtcore) only_one 'rtcore' embree/api.hpp ;;
   one_glm) only_one '[<"]glm/' core/math.hpp ;;
-  one_stb) only_one 'stb_' ;;
+  one_stb) only_one '[</]stb_image_write\.h>' film/png.hpp && only_one '[</]stb_image\.h>' texture/stb_image.hpp ;;
   angle_includes) grep -rnE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' . | nothing 'use #include <lightswitch/...>:' ;;
   arithmetic) grep -rL --include='*.hpp' '^#include <lightswitch/' . | grep -vx './core/floating_point.hpp' |
     nothing 'no way leads to core/floating_point.hpp from:' ;;

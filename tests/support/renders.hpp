@@ -41,7 +41,7 @@ LibraryDescription mapped(LibraryDescription scene, const Map& map, double facto
         }
     }
     for (auto& placed : scene.sources)
-        if (auto* point = std::get_if<PointSource>(&placed.source)) point->position = map(point->position);
+        if (auto* point = placed.source.get<PointSource>()) point->position = map(point->position);
     auto& camera = scene.camera;
     camera.to_world[3] = glm::dvec4(map(DVec3(camera.to_world[3])), 1);
     camera.aperture_radius *= factor;

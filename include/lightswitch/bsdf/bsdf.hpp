@@ -46,7 +46,8 @@ struct PhongTerms {
 /// - `sample(wo, u, transport)`: a direction, or nothing when light is absorbed;
 /// - `problem()`: why the parameters are impossible, in words, or an empty string.
 ///
-/// Optionally `phong()` returns the `PhongTerms` that represent the model.
+/// Optionally `phong()` returns the `PhongTerms` that represent the model, and `static constexpr bool transmits = true`
+/// says that light gets through the surface.
 template <class B>
 concept Bsdf = requires(const B bsdf, const Vec3 direction, const Vec3 u, const Transport transport) {
     { B::specular } -> std::convertible_to<bool>;
@@ -54,6 +55,13 @@ concept Bsdf = requires(const B bsdf, const Vec3 direction, const Vec3 u, const 
     { bsdf.sample(direction, u, transport) } -> std::same_as<Maybe<BsdfSample>>;
     { bsdf.problem() } -> std::convertible_to<std::string>;
 };
+
+/// Whether the model says that light gets through the surface.
+template <class B>
+inline constexpr bool transmits = [] {
+    if constexpr (requires { B::transmits; }) return B::transmits;
+    else return false;
+}();
 
 namespace detail {
 

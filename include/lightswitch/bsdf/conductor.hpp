@@ -2,6 +2,7 @@
 
 #include <lightswitch/bsdf/bsdf.hpp>
 #include <lightswitch/bsdf/fresnel.hpp>
+#include <lightswitch/bsdf/parameter.hpp>
 
 namespace lightswitch {
 
@@ -31,5 +32,10 @@ struct Conductor {
         return {.diffuse = Rgb(0), .specular = reflectance * fresnel_conductor(1, eta, k), .shininess = 500};
     }
 };
+
+template <>
+inline constexpr auto parameters_of<Conductor> =
+    std::tuple{Parameter{"eta", &Conductor::eta}, Parameter{"k", &Conductor::k},
+               Parameter{"specular_reflectance", &Conductor::reflectance}};
 
 }  // namespace lightswitch

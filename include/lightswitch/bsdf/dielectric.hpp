@@ -2,12 +2,14 @@
 
 #include <lightswitch/bsdf/bsdf.hpp>
 #include <lightswitch/bsdf/fresnel.hpp>
+#include <lightswitch/bsdf/parameter.hpp>
 
 namespace lightswitch {
 
 /// Perfectly smooth boundary between two transparent media: reflection and refraction after Fresnel.
 struct Dielectric {
     static constexpr bool specular = true;
+    static constexpr bool transmits = true;
 
     float eta = 1.5f;      ///< index of refraction behind the surface over that in front of it
     Rgb reflectance{1};    ///< factor on reflected light, 0 to 1
@@ -46,5 +48,10 @@ struct Dielectric {
         return {.diffuse = 0.1f * transmittance, .specular = 0.5f * reflectance, .shininess = 500};
     }
 };
+
+template <>
+inline constexpr auto parameters_of<Dielectric> =
+    std::tuple{Parameter{"specular_reflectance", &Dielectric::reflectance},
+               Parameter{"specular_transmittance", &Dielectric::transmittance}};
 
 }  // namespace lightswitch

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <lightswitch/bsdf/bsdf.hpp>
+#include <lightswitch/bsdf/parameter.hpp>
 #include <lightswitch/core/warp.hpp>
 
 namespace lightswitch {
@@ -25,5 +26,8 @@ struct Lambert {
     std::string problem() const { return reflectance_problem("reflectance", reflectance); }
     PhongTerms phong() const { return {.diffuse = reflectance}; }
 };
+
+template <>
+inline constexpr auto parameters_of<Lambert> = std::tuple{Parameter{"reflectance", &Lambert::reflectance}};
 
 }  // namespace lightswitch

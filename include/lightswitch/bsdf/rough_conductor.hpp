@@ -3,6 +3,7 @@
 #include <lightswitch/bsdf/bsdf.hpp>
 #include <lightswitch/bsdf/fresnel.hpp>
 #include <lightswitch/bsdf/ggx.hpp>
+#include <lightswitch/bsdf/parameter.hpp>
 
 namespace lightswitch {
 
@@ -61,5 +62,10 @@ struct RoughConductor {
                 .shininess = std::clamp(2 / (alpha * alpha) - 2, 1.0f, 1000.0f)};
     }
 };
+
+template <>
+inline constexpr auto parameters_of<RoughConductor> =
+    std::tuple{Parameter{"alpha", &RoughConductor::alpha}, Parameter{"eta", &RoughConductor::eta},
+               Parameter{"k", &RoughConductor::k}, Parameter{"specular_reflectance", &RoughConductor::reflectance}};
 
 }  // namespace lightswitch

@@ -33,7 +33,7 @@ constexpr std::size_t index_of() {
 }
 
 template <class T, class... List>
-inline constexpr bool contains = (std::is_same_v<T, List> || ...);
+inline constexpr bool is_one_of = (std::is_same_v<T, List> || ...);
 
 /// Which element of which type: the type in the upper 5 bits, the position among its like below. Made empty.
 class TypedIndex {
@@ -59,6 +59,25 @@ public:
 private:
     static constexpr std::uint32_t empty = 0xffffffffu;
     std::uint32_t bits_ = empty;
+};
+
+/// Which material a surface has, as `TypedIndex`, and whether its back looks like its front.
+class MaterialIndex {
+public:
+    static constexpr std::size_t max_position = (1u << 26) - 1;
+
+    constexpr MaterialIndex() = default;
+    /// `kind` at most `TypedIndex::max_kind`, `position` at most `max_position`; unchecked.
+    constexpr MaterialIndex(std::size_t kind, std::size_t position, bool two_sided = false)
+        : bits_(static_cast<std::uint32_t>(kind << 27 | position) | (two_sided ? both_sides : 0)) {}
+
+    constexpr std::size_t kind() const { return bits_ >> 27; }
+    constexpr std::size_t position() const { return bits_ & max_position; }
+    constexpr bool two_sided() const { return (bits_ & both_sides) != 0; }
+
+private:
+    static constexpr std::uint32_t both_sides = 1u << 26;
+    std::uint32_t bits_ = 0;
 };
 
 }  // namespace lightswitch

@@ -24,6 +24,8 @@ using Vec3 = glm::vec3;
 using Rgb = glm::vec3;
 using DVec2 = glm::dvec2;
 using DVec3 = glm::dvec3;
+using Mat3 = glm::mat3;
+using DMat3 = glm::dmat3;
 using DMat4 = glm::dmat4;
 
 inline constexpr float pi = 3.14159265358979323846f;

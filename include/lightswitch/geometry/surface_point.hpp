@@ -13,20 +13,26 @@ namespace lightswitch {
 /// leave nor skip a neighbour; no length is assumed anywhere (pbrt-v4, section 6.8).
 struct SurfacePoint {
     Vec3 position;
-    Vec3 normal;          ///< geometric, unit, on the front side
-    Vec3 shading_normal;  ///< unit; equal to `normal` on flat surfaces
-    Vec3 wo;              ///< where the ray that found the point came from: minus its direction
-    float offset = 0;     ///< see above
-    float distance = 0;   ///< from the origin of the ray that found the point, in multiples of its direction
-    TypedIndex material;  ///< which BSDF
-    TypedIndex light;     ///< which light of the scene this surface is, if it is one
+    Vec3 normal;             ///< geometric, unit, on the front side
+    Vec3 shading_normal;     ///< unit; equal to `normal` on flat surfaces
+    Vec3 wo;                 ///< where the ray that found the point came from: minus its direction
+    float offset = 0;        ///< see above
+    float distance = 0;      ///< from the origin of the ray that found the point, in multiples of its direction
+    MaterialIndex material;  ///< which BSDF
+    TypedIndex light;        ///< which light of the scene this surface is, if it is one
 
     /// The shading normal on the side that was seen.
     [[gnu::always_inline]] Vec3 facing_normal() const {
         return dot(shading_normal, wo) < 0 ? -shading_normal : shading_normal;
     }
 
-    [[gnu::always_inline]] Basis shading_frame() const { return Basis(shading_normal); }
+    /// The frame in which the surface model is asked: of a two-sided surface that is seen from the back mirrored, so
+    /// that the model sees its front.
+    [[gnu::always_inline]] Basis shading_frame() const {
+        Basis frame(shading_normal);
+        if (material.two_sided()) frame.normal *= std::copysign(1.0f, dot(wo, shading_normal));
+        return frame;
+    }
 
     /// The position moved off the surface to the side of `direction`.
     [[gnu::always_inline]] Vec3 position_towards(const Vec3& direction) const {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <lightswitch/light/light.hpp>
+#include <lightswitch/light/source.hpp>
 
 namespace lightswitch {
 
@@ -24,7 +24,7 @@ struct ConstantEnvironment {
                 .pdf = cosine_hemisphere_pdf(local.z),
                 .dirac = false,
                 .visibility = from.spawn(wi),
-                .spread = cosine_hemisphere_pdf(local.z).value / emission_pdf().value};
+                .spread = cosine_hemisphere_pdf(local.z).value / emission_pdf(wi).value};
     }
 
     [[gnu::always_inline]] SolidAnglePdf pdf(const Vec3& normal, const Vec3& wi) const {
@@ -32,13 +32,25 @@ struct ConstantEnvironment {
     }
 
     LightEmission emit(const Vec2& place, const Vec2& direction) const {
-        return {.ray = ray_into_scene(uniform_sphere(direction), place, scene_radius),
-                .weight = value / emission_pdf().value,
-                .pdf = emission_pdf()};
+        const Vec3 wi = uniform_sphere(direction);
+        return {.ray = ray_into_scene(wi, place, scene_radius),
+                .weight = value / emission_pdf(wi).value,
+                .pdf = emission_pdf(wi)};
     }
-    EmissionPdf emission_pdf() const { return uniform_disk_pdf(scene_radius) * uniform_sphere_pdf(); }
+    EmissionPdf emission_pdf(const Vec3&) const { return uniform_disk_pdf(scene_radius) * uniform_sphere_pdf(); }
     float spread(const SurfacePoint& at, const Vec3& wi, const Vec3&) const {
-        return pdf(at.facing_normal(), wi).value / emission_pdf().value;
+        return pdf(at.facing_normal(), wi).value / emission_pdf(wi).value;
+    }
+};
+
+/// The same radiance (W/(m^2 sr)) from every direction beyond the scene.
+struct EnvironmentSource {
+    Rgb radiance{1};
+
+    std::string problem() const { return detail::radiance_problem(radiance, "the environment's radiance"); }
+    ConstantEnvironment light(const RenderSpace&, double radius) const { return {radiance, float(radius)}; }
+    Emitter emitter(const ConstantEnvironment& light) const {
+        return {.kind = Emitter::Kind::environment, .strength = light.value};
     }
 };
 

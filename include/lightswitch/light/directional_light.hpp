@@ -1,6 +1,6 @@
 #pragma once
 
-#include <lightswitch/light/light.hpp>
+#include <lightswitch/light/source.hpp>
 
 namespace lightswitch {
 
@@ -30,6 +30,24 @@ struct DirectionalLight {
                 .dirac = true};
     }
     float spread(const SurfacePoint&, const Vec3&, const Vec3&) const { return pi * square(scene_radius); }
+};
+
+/// A light from infinitely far away: light travels along `direction` (any length but 0) and brings `irradiance` (W/m^2)
+/// to a surface that faces it.
+struct DirectionalSource {
+    DVec3 direction{0, 0, -1};
+    Rgb irradiance{1};
+
+    std::string problem() const {
+        const std::string problem = detail::direction_problem(direction, "the light's direction");
+        return problem.empty() ? detail::radiance_problem(irradiance, "the light's irradiance") : problem;
+    }
+    DirectionalLight light(const RenderSpace&, double radius) const {
+        return {Vec3(-glm::normalize(direction)), irradiance, float(radius)};
+    }
+    Emitter emitter(const DirectionalLight& light) const {
+        return {.kind = Emitter::Kind::directional, .strength = light.irradiance, .direction = light.towards};
+    }
 };
 
 }  // namespace lightswitch

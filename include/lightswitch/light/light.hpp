@@ -53,24 +53,8 @@ concept Light = requires(const L light, const SurfacePoint point, const Vec2 u) 
     { light.power() } -> std::convertible_to<double>;
 };
 
-/// A light at which paths can start, for methods that trace light.
-///
-/// - `emit(place, direction)`: a ray, from two points in [0,1)^2;
-/// - `spread(at, wi, place)`: over what area, across their way, paths that start at `place` (on the light) are spread
-/// when they
-///   get to the point `at`, which sees that place in the direction `wi`: the density with which `sample` at `at`
-///   chooses the place,
-///   over the density with which `emit` does so and passes there. The square of the distance, times 4 pi, for a point
-///   light.
-template <class L>
-concept EmittingLight = Light<L> && requires(const L light, const SurfacePoint point, const Vec3 v, const Vec2 u) {
-    { light.emit(u, u) } -> std::same_as<LightEmission>;
-    { light.spread(point, v, v) } -> std::same_as<float>;
-};
-
 /// A light with a surface, which rays can hit. `pdf(from, wi, hit)` is the density with which `sample` at the
 /// position `from` chooses the direction `wi` to the point `hit` on the light; `emitted` the radiance that leaves it.
-/// If paths can start there, `emission_pdf(cosine)` is the density of `emit` at that angle to the normal.
 template <class L>
 concept AreaLight = Light<L> &&
     requires(const L light, const SurfacePoint point, const Vec3 position, const Vec3 direction) {
@@ -79,12 +63,33 @@ concept AreaLight = Light<L> &&
 };
 
 /// A light that surrounds the scene. `radiance(wi)` arrives from the direction `wi`, which `sample`, at a
-/// point whose `facing_normal()` is `normal`, chooses with density `pdf(normal, wi)`. If paths can start there,
-/// `emission_pdf()` is the density of `emit`.
+/// point whose `facing_normal()` is `normal`, chooses with density `pdf(normal, wi)`.
 template <class L>
 concept EnvironmentLight = Light<L> && requires(const L light, const Vec3 direction) {
     { light.radiance(direction) } -> std::same_as<Rgb>;
     { light.pdf(direction, direction) } -> std::same_as<SolidAnglePdf>;
+};
+
+/// A light at which paths can start, for methods that trace light.
+///
+/// - `emit(place, direction)`: a ray, from two points in [0,1)^2;
+/// - `spread(at, wi, place)`: over what area, across their way, paths that start at `place` (on the light) are spread
+///   when they get to the point `at`, which sees that place in the direction `wi`: the density with which `sample` at
+///   `at` chooses the place, over the density with which `emit` does so and passes there. The square of the distance,
+///   times 4 pi, for a point light;
+/// - of a light that rays can meet, the density of `emit`: `emission_pdf(point, direction)` of a ray that leaves the
+///   `point` of an area light along `direction`, or `emission_pdf(wi)` of one that comes from the direction `wi` of an
+///   environment.
+template <class L>
+concept EmittingLight = Light<L> && requires(const L light, const SurfacePoint point, const Vec3 v, const Vec2 u) {
+    { light.emit(u, u) } -> std::same_as<LightEmission>;
+    { light.spread(point, v, v) } -> std::same_as<float>;
+    requires !AreaLight<L> || requires {
+        { light.emission_pdf(point, v) } -> std::same_as<EmissionPdf>;
+    };
+    requires !EnvironmentLight<L> || requires {
+        { light.emission_pdf(v) } -> std::same_as<EmissionPdf>;
+    };
 };
 
 }  // namespace lightswitch

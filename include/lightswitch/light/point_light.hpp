@@ -1,6 +1,6 @@
 #pragma once
 
-#include <lightswitch/light/light.hpp>
+#include <lightswitch/light/source.hpp>
 
 namespace lightswitch {
 
@@ -33,6 +33,23 @@ struct PointLight {
     }
     float spread(const SurfacePoint& at, const Vec3&, const Vec3&) const {
         return 4 * pi * length_squared(position - at.position);
+    }
+};
+
+/// A light at a point: `intensity` in W/sr.
+struct PointSource {
+    DVec3 position{0};
+    Rgb intensity{1};
+
+    std::string problem() const {
+        const std::string problem = detail::position_problem(position, "the light's position");
+        return problem.empty() ? detail::radiance_problem(intensity, "the light's intensity") : problem;
+    }
+    PointLight light(const RenderSpace& space, double) const {
+        return {detail::light_position(position, space), detail::light_intensity(intensity, space)};
+    }
+    Emitter emitter(const PointLight& light) const {
+        return {.kind = Emitter::Kind::point, .strength = light.intensity, .position = light.position};
     }
 };
 

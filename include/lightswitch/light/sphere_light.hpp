@@ -61,10 +61,12 @@ struct SphereLight {
         return {
             .ray = {.origin = center + radius * outward + offset * normal, .direction = Basis(normal).to_world(local)},
             .weight = emission * (pi / area_pdf().value),
-            .pdf = emission_pdf(local.z),
+            .pdf = area_pdf() * cosine_hemisphere_pdf(local.z),
             .cosine = local.z};
     }
-    EmissionPdf emission_pdf(float cosine) const { return area_pdf() * cosine_hemisphere_pdf(cosine); }
+    EmissionPdf emission_pdf(const SurfacePoint& at, const Vec3& direction) const {
+        return area_pdf() * cosine_hemisphere_pdf(dot(direction, at.normal));
+    }
     float spread(const SurfacePoint& at, const Vec3& wi, const Vec3& place) const {
         if (inward) return pi * length_squared(place - at.position) * radius / std::abs(dot(wi, place - center));
         return pi * pdf(at.position, wi, at).value / area_pdf().value;

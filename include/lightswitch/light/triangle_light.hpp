@@ -47,10 +47,12 @@ struct TriangleLight {
         return {.ray = {.origin = corner + b.x * edge1 + b.y * edge2 + offset * normal,
                         .direction = Basis(normal).to_world(local)},
                 .weight = emission * (pi / density.value),
-                .pdf = emission_pdf(local.z),
+                .pdf = density * cosine_hemisphere_pdf(local.z),
                 .cosine = local.z};
     }
-    EmissionPdf emission_pdf(float cosine) const { return density * cosine_hemisphere_pdf(cosine); }
+    EmissionPdf emission_pdf(const SurfacePoint& at, const Vec3& direction) const {
+        return density * cosine_hemisphere_pdf(dot(direction, at.normal));
+    }
     float spread(const SurfacePoint& at, const Vec3& wi, const Vec3& place) const {
         return pi * length_squared(place - at.position) / std::abs(dot(wi, normal));
     }

@@ -28,7 +28,7 @@ class MitsubaReader {
 public:
     MitsubaReader(const std::filesystem::path& path, const std::map<std::string, std::string>& defines,
                   Notices* notices)
-        : folder_(path.parent_path()), file_(path, defines), notices_(notices) {
+        : folder_(path.parent_path()), file_(path, defines), textures_(file_, folder_), notices_(notices) {
         scene_.name = path.stem().string();
         scene_.files.push_back(path.string());
     }
@@ -40,8 +40,9 @@ public:
         XmlElement element(file_, root);
         check_version(root);
 
-        // BSDFs first: those that no shape uses are checked too.
-        for (const auto node : element.objects({"bsdf"})) read_bsdf(file_, node);
+        // Textures and BSDFs first: those that nothing uses are checked too.
+        for (const auto node : element.objects({"texture"})) textures_.read(node);
+        for (const auto node : element.objects({"bsdf"})) read_material(file_, node, textures_);
         if (const auto node = at_most_one(element, "integrator")) read_integrator(file_, *node, scene_);
         const auto sensor = at_most_one(element, "sensor");
         if (!sensor) element.error("there is no camera: add a <sensor>");
@@ -49,6 +50,7 @@ public:
         for (const auto node : element.objects({"shape"})) read_shape(node);
         for (const auto node : element.objects({"emitter"})) read_emitter(node);
         element.finish();
+        for (std::string& file : textures_.files()) scene_.files.push_back(std::move(file));
         return std::move(scene_);
     }
 
@@ -108,14 +110,16 @@ private:
         // As in Mitsuba 3.9, a reflection turns the sphere inside out.
         return {.center = DVec3(to_world * glm::dvec4(center, 1)),
                 .radius = radius * std::abs(scale),
-                .inward = flip != (scale < 0)};
+                .inward = flip != (scale < 0),
+                .axes = DMat3(to_world) / scale};
     }
 
     Mesh read_mesh_file(XmlElement& element, const DMat4& to_world, bool flip) {
         const auto name = element.text("filename");
         if (!name) element.error("the parameter \"filename\" is missing");
         const bool flat = element.boolean("face_normals", false);
-        element.boolean("flip_tex_coords", false);  // there are no textures
+        // Mitsuba's defaults: most OBJ files have the origin of images at the top.
+        const bool flip_v = element.boolean("flip_tex_coords", element.type() == "obj");
         const FileNormals use = flat ? FileNormals::ignore : FileNormals::use;
         const std::filesystem::path file = folder_ / *name;
         scene_.files.push_back(file.string());
@@ -130,6 +134,8 @@ private:
             for (std::string& notice : notices)
                 if (noticed_.insert(notice).second) notices_->push_back(std::move(notice));
 
+        if (flip_v)
+            for (Vec2& uv : mesh.uvs) uv.y = 1 - uv.y;
         const bool has_normals = !mesh.normals.empty();
         mesh = mesh.transformed(to_world);
         // As in Mitsuba 3.9, where there are no normals in the file a reflection turns the winding, and so the mesh
@@ -169,12 +175,44 @@ private:
             if (has_environment_) element.error("is the second environment of the scene");
             has_environment_ = true;
             scene_.add(EnvironmentSource{.radiance = emission("radiance")}, element.origin());
+        } else if (element.type() == "envmap") {
+            if (has_environment_) element.error("is the second environment of the scene");
+            has_environment_ = true;
+            read_environment_map(element, to_world);
+        } else if (element.type() == "spot") {
+            const double cutoff = element.number("cutoff_angle", 20);
+            scene_.add(SpotSource{.position = to_world ? DVec3((*to_world)[3]) : DVec3(0),
+                                  .direction = to_world ? DVec3((*to_world)[2]) : DVec3(0, 0, 1),
+                                  .intensity = emission("intensity"),
+                                  .cutoff_angle = cutoff,
+                                  .beam_width = element.number("beam_width", 0.75 * cutoff)},
+                       element.origin());
         } else if (element.type() == "area") {
             element.error("an area light must be inside a <shape>");
         } else {
-            element.unknown_type("point, directional, constant, and area inside a shape");
+            element.unknown_type("point, spot, directional, constant, envmap, and area inside a shape");
         }
         element.finish();
+    }
+
+    void read_environment_map(XmlElement& element, const std::optional<DMat4>& to_world) {
+        const auto name = element.text("filename");
+        if (!name) element.error("the parameter \"filename\" is missing");
+        const std::string path = (folder_ / *name).string();
+        EnvironmentMapSource source{.map = {}, .scale = element.number("scale", 1)};
+        // Textures keep their own bitmaps: of this one every texel is asked for.
+        try {
+            const Bitmap bitmap = load_bitmap(path);
+            std::vector<Rgb> texels;
+            for (int y = 0; y < bitmap.height(); ++y)
+                for (int x = 0; x < bitmap.width(); ++x) texels.push_back(bitmap.texel(x, y));
+            source.map = std::make_shared<const EnvironmentMap>(std::move(texels), bitmap.width(), bitmap.height());
+        } catch (const Error& error) {
+            fail(element.origin(), error.what());
+        }
+        if (to_world) source.to_world = DMat3(*to_world);
+        scene_.files.push_back(path);
+        scene_.add(std::move(source), element.origin());
     }
 
     /// Index of the material of a `<bsdf>` or `<ref>`; one material however many shapes use it.
@@ -182,8 +220,9 @@ private:
         const pugi::xml_node target = resolve_bsdf(file_, node);
         const auto known = materials_.find(target.offset_debug());
         if (known != materials_.end()) return known->second;
-        const std::size_t index = scene_.add(read_bsdf(file_, target), file_.origin(target));
-        return materials_[target.offset_debug()] = index;
+        ReadMaterial read = read_material(file_, target, textures_);
+        scene_.materials.push_back({std::move(read.bsdf), file_.origin(target), read.two_sided});
+        return materials_[target.offset_debug()] = scene_.materials.size() - 1;
     }
 
     /// Mitsuba gives a shape without a BSDF a grey one, or a black one when it is a light.
@@ -195,6 +234,7 @@ private:
 
     std::filesystem::path folder_;
     XmlFile file_;
+    TextureReader textures_;
     Notices* notices_;
     std::set<std::string> noticed_;  ///< several shapes may use one file
     LibraryDescription scene_;

@@ -2,8 +2,7 @@
 
 // Surface models in Mitsuba's scene files.
 
-#include <lightswitch/load/xml_element.hpp>
-#include <lightswitch/scene/library.hpp>
+#include <lightswitch/load/mitsuba_texture.hpp>
 
 namespace lightswitch::detail {
 
@@ -68,41 +67,16 @@ inline RoughConductor read_rough_conductor(XmlElement& element) {
 
 /// The element that a `<ref>` stands for, or the element itself. Throws unless it is a BSDF.
 inline pugi::xml_node resolve_bsdf(const XmlFile& file, pugi::xml_node node) {
-    if (std::string_view(node.name()) != "ref") return node;
-    file.check_attributes(node, {"id"}, {"name"});
-    file.check_childless(node);
-    const std::string id = node.attribute("id").value();
-    const pugi::xml_node target = file.find(id);
-    if (!target) fail(file.origin(node), "there is no element with the id " + quote(id));
-    if (std::string_view(target.name()) != "bsdf")
-        fail(file.origin(node), "refers to " + file.origin(target).element + ", but only a <bsdf> can be referred to");
-    return target;
-}
-
-inline LibraryBsdf read_bsdf(const XmlFile& file, pugi::xml_node node);
-
-inline LibraryBsdf read_two_sided(XmlElement& element) {
-    const auto inner = element.objects({"bsdf", "ref"});
-    if (inner.size() != 1)
-        element.error("needs exactly one bsdf inside, for both sides, not " + std::to_string(inner.size()));
-    const pugi::xml_node node = resolve_bsdf(element.file(), inner[0]);
-    const std::string type = node.attribute("type").value();
-    if (type == "twosided") fail(element.file().origin(inner[0]), "a twosided bsdf cannot be inside another one");
-    if (type == "dielectric") fail(element.file().origin(inner[0]), "a bsdf that transmits light cannot be twosided");
-    return std::visit(
-        []<class B>(const B& bsdf) -> LibraryBsdf {
-            if constexpr (requires { LibraryBsdf(TwoSided<B>{bsdf}); }) return TwoSided<B>{bsdf};
-            else return bsdf;
-        },
-        read_bsdf(element.file(), node));
+    return std::string_view(node.name()) == "ref" ? file.target(node, "bsdf") : node;
 }
 
 /// Reads a `<bsdf>`, with Mitsuba's defaults for what is left out.
-inline LibraryBsdf read_bsdf(const XmlFile& file, pugi::xml_node node) {
+inline LibraryBsdf read_bsdf(const XmlFile& file, pugi::xml_node node, TextureReader& textures) {
     XmlElement element(file, node);
-    const auto finished = [&](LibraryBsdf bsdf) {
+    const auto finished = [&](const auto& bsdf) {
+        LibraryBsdf result = textures.with_textures(element, bsdf);
         element.finish();
-        return bsdf;
+        return result;
     };
     if (element.type() == "diffuse") return finished(Lambert{.reflectance = element.color("reflectance", 0.5f)});
     if (element.type() == "conductor") {
@@ -119,8 +93,28 @@ inline LibraryBsdf read_bsdf(const XmlFile& file, pugi::xml_node node) {
         result.transmittance = element.color("specular_transmittance", 1);
         return finished(result);
     }
-    if (element.type() == "twosided") return finished(read_two_sided(element));
     element.unknown_type("diffuse, conductor, roughconductor, dielectric and twosided");
+}
+
+/// A `<bsdf>`, and whether it is a `twosided` one: then what is inside.
+struct ReadMaterial {
+    LibraryBsdf bsdf;
+    bool two_sided = false;
+};
+inline ReadMaterial read_material(const XmlFile& file, pugi::xml_node node, TextureReader& textures) {
+    if (std::string_view(node.attribute("type").value()) != "twosided") return {read_bsdf(file, node, textures)};
+    XmlElement element(file, node);
+    const auto inner = element.objects({"bsdf", "ref"});
+    if (inner.size() != 1)
+        element.error("needs exactly one bsdf inside, for both sides, not " + std::to_string(inner.size()));
+    const pugi::xml_node front = resolve_bsdf(file, inner[0]);
+    if (std::string_view(front.attribute("type").value()) == "twosided")
+        fail(file.origin(inner[0]), "a twosided bsdf cannot be inside another one");
+    ReadMaterial result{read_bsdf(file, front, textures), true};
+    if (std::visit([]<class B>(const B&) { return transmits<B>; }, result.bsdf))
+        fail(file.origin(inner[0]), "a bsdf that transmits light cannot be twosided");
+    element.finish();
+    return result;
 }
 
 }  // namespace lightswitch::detail

@@ -51,12 +51,16 @@ inline FilmDescription read_film(const XmlFile& file, pugi::xml_node node) {
     element.boolean("banner", false);
     element.boolean("compensate", false);
 
-    const bool whole = element.integer("crop_offset_x", 0).value_or(0) == 0 &&
-                       element.integer("crop_offset_y", 0).value_or(0) == 0 &&
-                       element.integer("crop_width", 0).value_or(film.width) == film.width &&
-                       element.integer("crop_height", 0).value_or(film.height) == film.height;
-    if (!whole)
-        element.error("cropping is not supported: remove crop_offset_x, crop_offset_y, crop_width and crop_height");
+    film.crop_x = element.integer("crop_offset_x", 0).value_or(0);
+    film.crop_y = element.integer("crop_offset_y", 0).value_or(0);
+    const int width = element.integer("crop_width", 0).value_or(film.width),
+              height = element.integer("crop_height", 0).value_or(film.height);
+    if (width != film.width || height != film.height || film.crop_x != 0 || film.crop_y != 0) {
+        if (film.crop_x > film.width - width || film.crop_y > film.height - height)
+            element.error("the crop window is not within the film");
+        film.full_width = std::exchange(film.width, width);
+        film.full_height = std::exchange(film.height, height);
+    }
     if (element.boolean("sample_border", false))
         fail(element.origin("sample_border"), "is not supported: set it to false");
     element.finish();
@@ -110,13 +114,20 @@ inline void read_field_of_view(XmlElement& element, CameraDescription& camera) {
 /// the scale of the scene.
 inline void read_sensor(const XmlFile& file, pugi::xml_node node, LibraryDescription& scene) {
     XmlElement element(file, node);
-    const bool lens = element.type() == "thinlens";
-    if (!lens && element.type() != "perspective") element.unknown_type("perspective and thinlens");
+    const bool lens = element.type() == "thinlens", orthographic = element.type() == "orthographic";
+    if (!lens && !orthographic && element.type() != "perspective")
+        element.unknown_type("perspective, thinlens and orthographic");
 
     CameraDescription camera;
     camera.origin = element.origin();
-    read_field_of_view(element, camera);
-    if (const auto to_world = element.transform("to_world")) {
+    if (orthographic) camera.projection = CameraDescription::Projection::orthographic;
+    if (!orthographic) read_field_of_view(element, camera);
+    if (auto to_world = element.transform("to_world")) {
+        if (orthographic) {
+            // The image shows what is within 1 of the axis in each direction, before it is scaled.
+            camera.half_width = glm::length(DVec3((*to_world)[0]));
+            for (int i = 0; i < 3; ++i) (*to_world)[i] /= camera.half_width;
+        }
         camera.to_world = *to_world;
         // The same tolerance as in Mitsuba, for matrices written with few digits.
         for (int i = 0; i < 3; ++i)
@@ -139,9 +150,10 @@ inline void read_sensor(const XmlFile& file, pugi::xml_node node, LibraryDescrip
         if (!(*radius >= 0)) fail(element.origin("aperture_radius"), "must not be negative");
         camera.aperture_radius = *radius;
         camera.focus_distance = focus.value_or(far_clip.value_or(10000));  // Mitsuba's default: the far plane
-    } else {
-        for (const char* offset : {"principal_point_offset_x", "principal_point_offset_y"})
-            if (element.number(offset, 0) != 0) fail(element.origin(offset), "is not supported: set it to 0");
+    } else if (!orthographic) {
+        // As Mitsuba 3.9 renders it, a positive offset moves what is seen to the left, or up.
+        camera.principal_point_offset = {-element.number("principal_point_offset_x", 0),
+                                         -element.number("principal_point_offset_y", 0)};
     }
 
     scene.camera = camera;

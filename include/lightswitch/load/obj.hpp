@@ -17,9 +17,9 @@ namespace lightswitch {
 /// Convex polygons become fans around their first corner, others are cut into triangles that cover the same area.
 /// Corners are one vertex when they agree in position, texture coordinate and normal, so that normals computed by
 /// `Mesh::smooth` keep an edge where the texture has a seam (as in Mitsuba 3.9); with `FileNormals::ignore`, when they
-/// agree in position. Where the file's normals point is the front; where a corner has none, or one of length 0, while
-/// others have, it gets what `Mesh::smooth` computes. Groups, materials, texture coordinates and vertex colours are
-/// skipped.
+/// agree in position and texture coordinate. Corners without a texture coordinate get (0, 0) when others have one.
+/// Where the file's normals point is the front; where a corner has none, or one of length 0, while others have, it gets
+/// what `Mesh::smooth` computes. Groups, materials and vertex colours are skipped.
 ///
 /// `notices` gets a line for each kind of other statement that is skipped, such as `l` and `curv`, for polygons that
 /// cross themselves and for normals that are computed because they are missing.
@@ -40,6 +40,7 @@ public:
         origin_.line = 0;
         if (mesh_.triangles.empty()) fail(origin_, "contains no faces");
         if (!mesh_.normals.empty()) mesh_.normals.resize(mesh_.positions.size(), DVec3(0));
+        if (!mesh_.uvs.empty()) mesh_.uvs.resize(mesh_.positions.size(), Vec2(0));
         for (std::size_t v = 0; v < mesh_.normals.size(); ++v)
             if (mesh_.normals[v] == DVec3(0)) {
                 origin_.line = lines_[v];
@@ -90,8 +91,8 @@ private:
         } else if (keyword == "vn") {
             normals_.push_back(vector(line, keyword, 3, 3));
         } else if (keyword == "vt") {
-            vector(line, keyword, 1, 3);
-            ++texture_coordinates_;
+            const DVec3 uv = vector(line, keyword, 1, 3);
+            texture_coordinates_.emplace_back(uv.x, uv.y);
         } else if (keyword == "f" || keyword == "fo") {  // the same in old files
             face(line);
         } else if (std::find(skipped.begin(), skipped.end(), keyword) != skipped.end()) {
@@ -127,7 +128,7 @@ private:
 
     std::uint32_t corner(std::string_view word) {
         static constexpr std::array<const char*, 3> names{"vertex", "texture coordinate", "normal"};
-        const std::array<std::size_t, 3> sizes{positions_.size(), texture_coordinates_, normals_.size()};
+        const std::array<std::size_t, 3> sizes{positions_.size(), texture_coordinates_.size(), normals_.size()};
         Corner key{-1, -1, -1};
         std::string_view rest = word;
         for (std::size_t i = 0;; ++i) {
@@ -139,7 +140,8 @@ private:
             if (slash == std::string_view::npos) break;
             rest.remove_prefix(slash + 1);
         }
-        return vertex(use_ == FileNormals::use ? key : Corner{key[0], -1, -1});
+        if (use_ == FileNormals::ignore) key[2] = -1;
+        return vertex(key);
     }
 
     std::int64_t index(std::string_view word, std::size_t size, const char* what) {
@@ -160,6 +162,10 @@ private:
             mesh_.normals.resize(mesh_.positions.size(), DVec3(0));
             mesh_.normals.push_back(normals_[static_cast<std::size_t>(key[2])]);
         }
+        if (key[1] >= 0) {
+            mesh_.uvs.resize(mesh_.positions.size(), Vec2(0));
+            mesh_.uvs.push_back(texture_coordinates_[static_cast<std::size_t>(key[1])]);
+        }
         mesh_.positions.push_back(positions_[static_cast<std::size_t>(key[0])]);
         lines_.push_back(origin_.line);
         return entry->second;
@@ -178,7 +184,7 @@ private:
     std::string joined_;
     int skipped_lines_ = 0;
     std::vector<DVec3> positions_, normals_;
-    std::size_t texture_coordinates_ = 0;
+    std::vector<Vec2> texture_coordinates_;
     std::unordered_map<Corner, std::uint32_t, CornerHash> vertices_;
     std::vector<std::uint32_t> corners_;
     PolygonCutter cutter_;

@@ -29,6 +29,8 @@ public:
     Origin origin(pugi::xml_node node) const;
     /// The element with that id; empty when there is none.
     pugi::xml_node find(const std::string& id) const;
+    /// The element with that tag that a `<ref>` stands for. Throws when there is none.
+    pugi::xml_node target(pugi::xml_node reference, const std::string& tag) const;
     /// Throws unless `node` has each of the `required` attributes, at most the `optional` ones besides, and none twice.
     void check_attributes(pugi::xml_node node, std::initializer_list<std::string_view> required,
                           std::initializer_list<std::string_view> optional = {}) const;
@@ -94,6 +96,17 @@ inline Origin XmlFile::origin(pugi::xml_node node) const {
 inline pugi::xml_node XmlFile::find(const std::string& id) const {
     const auto found = ids_.find(id);
     return found == ids_.end() ? pugi::xml_node() : found->second;
+}
+
+inline pugi::xml_node XmlFile::target(pugi::xml_node reference, const std::string& tag) const {
+    check_attributes(reference, {"id"}, {"name"});
+    check_childless(reference);
+    const std::string id = reference.attribute("id").value();
+    const pugi::xml_node found = find(id);
+    if (!found) fail(origin(reference), "there is no element with the id " + quote(id));
+    if (found.name() != tag)
+        fail(origin(reference), "refers to " + origin(found).element + ", but only a <" + tag + "> can be referred to");
+    return found;
 }
 
 inline void XmlFile::check_attributes(pugi::xml_node node, std::initializer_list<std::string_view> required,

@@ -46,6 +46,9 @@ public:
     /// grey as a reflectance; as an emission it has the white of equal energy, which is not that of sRGB.
     Rgb color(const std::string& name, float otherwise, Color use = Color::reflectance);
 
+    /// The `<texture>` inside that gives the parameter of that name, or the `<ref>` to one.
+    std::optional<pugi::xml_node> texture(const std::string& name);
+
     /// The objects inside with one of these tags, once each.
     std::vector<pugi::xml_node> objects(std::initializer_list<std::string_view> tags);
     /// Throws for every parameter and object that was never asked for.
@@ -68,7 +71,7 @@ inline XmlElement::XmlElement(const XmlFile& file, pugi::xml_node node) : file_(
 
     static const std::set<std::string_view> vectors{"point", "vector"},
         values{"float", "integer", "boolean", "string", "rgb", "spectrum"},
-        objects{"bsdf", "shape", "emitter", "sensor", "film", "rfilter", "sampler", "integrator", "ref"};
+        objects{"bsdf", "shape", "emitter", "sensor", "film", "rfilter", "sampler", "integrator", "texture", "ref"};
     for (const pugi::xml_node child : node.children()) {
         const std::string_view tag = child.name();
         if (child.type() != pugi::node_element || tag == "default" || tag == "alias") continue;
@@ -160,6 +163,19 @@ inline Rgb XmlElement::color(const std::string& name, float otherwise, Color use
     const Rgb result(color);
     if (!lightswitch::is_finite(result)) fail(file_.origin(node), "the colour is too large");
     return result;
+}
+
+inline std::optional<pugi::xml_node> XmlElement::texture(const std::string& name) {
+    asked_.insert(name);
+    const auto found = std::find_if(objects_.begin(), objects_.end(), [&](pugi::xml_node node) {
+        const std::string_view tag = node.name();
+        return node.attribute("name").value() == name && (tag == "texture" || tag == "ref");
+    });
+    if (found == objects_.end()) return {};
+    const pugi::xml_node node = *found;
+    objects_.erase(found);
+    if (parameters_.contains(name)) fail(file_.origin(node), "the parameter is given twice");
+    return node;
 }
 
 inline std::vector<pugi::xml_node> XmlElement::objects(std::initializer_list<std::string_view> tags) {

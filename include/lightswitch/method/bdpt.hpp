@@ -43,13 +43,14 @@ struct Bdpt {
             return counted(contribution, s, t);
         };
         frame.pixels([&](const Ray& ray, auto& sampler, const PixelContext& pixel) {
-            static thread_local std::vector<PathVertex> light_path;  // kept, so that it need not be allocated again
+            using Vertex = PathVertex<point_of<decltype(scene)>>;
+            static thread_local std::vector<Vertex> light_path;  // kept, so that it need not be allocated again
             light_path.clear();
             auto light_sampler = sampler.split();
             splat_light_subpath(scene, light_sampler, pixel.splatter, limits, light_paths, {}, count,
-                                [&](const PathVertex& y) { light_path.push_back(y); });
+                                [&](const Vertex& y) { light_path.push_back(y); });
             return gather_camera_subpath(scene, ray, sampler, light_path, limits, light_paths, {}, count,
-                                         [](const PathVertex&, const Arrival&) { return Rgb(0); });
+                                         [](const Vertex&, const Arrival&) { return Rgb(0); });
         });
     }
 

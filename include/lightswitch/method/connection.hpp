@@ -6,8 +6,6 @@
 #include <lightswitch/core/sampler.hpp>
 #include <lightswitch/method/subpath.hpp>
 
-#include <span>
-
 namespace lightswitch {
 
 /// What a strategy contributes by one path.
@@ -25,8 +23,8 @@ struct Connection : Contribution {
 inline float strategy_weight(double fewer, double more) { return static_cast<float>(1 / (1 + fewer + more)); }
 
 /// s = 0: the camera path has met a light.
-inline Contribution meet_light(const auto& scene, const CameraSubpath& path) {
-    const PathVertex& z = path.vertex();
+inline Contribution meet_light(const auto& scene, const auto& path) {
+    const auto& z = path.vertex();
     if (!z.point.light) return {};
     const Rgb radiance = scene.emitted(z.point, z.point.wo);
     if (is_black(radiance)) return {};
@@ -41,7 +39,7 @@ inline Contribution meet_light(const auto& scene, const CameraSubpath& path) {
 }
 
 /// s = 0: the camera path has left the scene.
-inline Contribution meet_environment(const auto& scene, const CameraSubpath& path) {
+inline Contribution meet_environment(const auto& scene, const auto& path) {
     const Vec3 direction = path.ray().direction;
     const Rgb radiance = scene.environment(direction);
     if (is_black(radiance)) return {};
@@ -50,13 +48,13 @@ inline Contribution meet_environment(const auto& scene, const CameraSubpath& pat
         // Places beyond the scene are directions: the weights have not been turned to area.
         const PartialWeights& w = path.vertex().weights;
         more = heuristic(scene.environment_pdf(path.previous_normal(), direction).value) * w.last +
-               heuristic(scene.environment_emission_pdf().value) * w.connections;
+               heuristic(scene.environment_emission_pdf(direction).value) * w.connections;
     }
     return {path.carried() * radiance, strategy_weight(0, more)};
 }
 
 /// s = 1: a point of a light, chosen from the vertex of the camera path (next event estimation).
-[[gnu::always_inline]] inline Connection connect_to_light(const auto& scene, const PathVertex& z, const Arrival& at_z,
+[[gnu::always_inline]] inline Connection connect_to_light(const auto& scene, const auto& z, const Arrival& at_z,
                                                           float choice, const Vec2& place,
                                                           const MergeWeights& merge_weights,
                                                           const PathClasses& left_out = {}) {
@@ -74,9 +72,8 @@ inline Contribution meet_environment(const auto& scene, const CameraSubpath& pat
 }
 
 /// t = 1: the vertex of a light path, seen by the camera. `view` must be what the camera says of it.
-[[gnu::always_inline]] inline Connection connect_to_camera(const auto& scene, const PathVertex& y,
-                                                           const Camera::View& view, double light_paths,
-                                                           const MergeWeights& merge_weights) {
+[[gnu::always_inline]] inline Connection connect_to_camera(const auto& scene, const auto& y, const CameraView& view,
+                                                           double light_paths, const MergeWeights& merge_weights) {
     const Turn at_light = turn<Transport::importance>(scene, y.point, Arrival(y.point), view.wi);
     if (is_black(at_light.value)) return {};
     const double cosine = std::abs(dot(y.point.normal, view.wi));
@@ -88,8 +85,8 @@ inline Contribution meet_environment(const auto& scene, const CameraSubpath& pat
 }
 
 /// s, t >= 2: a vertex of each path.
-[[gnu::always_inline]] inline Connection connect(const auto& scene, const PathVertex& y, const PathVertex& z,
-                                                 const Arrival& at_z, const MergeWeights& merge_weights) {
+[[gnu::always_inline]] inline Connection connect(const auto& scene, const auto& y, const auto& z, const Arrival& at_z,
+                                                 const MergeWeights& merge_weights) {
     const Vec3 to_light = y.point.position - z.point.position;
     const double distance2 = length_squared(to_light);
     if (!(distance2 > 0)) return {};
@@ -128,8 +125,8 @@ inline bool visible(const auto& scene, const Connection& connection) {
 /// `visit(vertex)` at each vertex to which a camera path can connect.
 void splat_light_subpath(const auto& scene, auto& sampler, auto& splatter, const PathLimits& limits, double light_paths,
                          const MergeWeights& merge_weights, const auto& count, const auto& visit) {
-    const Camera& camera = scene.camera();
-    trace_light_subpath(scene, sampler, limits, merge_weights, [&](const PathVertex& y) {
+    const auto& camera = connectable_camera(scene.camera());
+    trace_light_subpath(scene, sampler, limits, merge_weights, [&](const auto& y) {
         visit(y);
         const auto view = camera.view(y.point, camera.has_lens() ? sampler.next_2d() : Vec2(0.5f));
         if (!view) return;
@@ -144,7 +141,7 @@ void splat_light_subpath(const auto& scene, auto& sampler, auto& splatter, const
 ///
 /// Most connections carry little. Whether one is worth its ray is left to Russian roulette: one that would add 1 % to
 /// what the path has gathered is traced with probability 0.1, and counts ten times.
-Rgb gather_camera_subpath(const auto& scene, const Ray& ray, auto& sampler, std::span<const PathVertex> light_path,
+Rgb gather_camera_subpath(const auto& scene, const Ray& ray, auto& sampler, const auto& light_path,
                           const PathLimits& limits, double light_paths, const MergeWeights& merge_weights,
                           const auto& count, const auto& at_vertex) {
     constexpr float worth = 0.1f;
@@ -165,8 +162,8 @@ Rgb gather_camera_subpath(const auto& scene, const Ray& ray, auto& sampler, std:
         if (visible(scene, connection)) add(connection, s, t);
     };
 
-    CameraSubpath path(ray, light_paths, merge_weights);
-    const PathVertex& z = path.vertex();
+    CameraSubpath<point_of<decltype(scene)>> path(ray, light_paths, merge_weights);
+    const auto& z = path.vertex();
     for (;;) {
         if (!path.advance(scene)) {
             add(meet_environment(scene, path), 0, z.edges + 1);
@@ -180,7 +177,7 @@ Rgb gather_camera_subpath(const auto& scene, const Ray& ray, auto& sampler, std:
             const Arrival at_z(z.point);
             try_connection(connect_to_light(scene, z, at_z, choices.x, on_light, merge_weights, limits.left_out), 1,
                            z.edges + 1);
-            for (const PathVertex& y : light_path) {
+            for (const auto& y : light_path) {
                 if (limits.max_depth >= 0 && y.edges + 1 + z.edges > limits.max_depth) break;
                 try_connection(connect(scene, y, z, at_z, merge_weights), y.edges + 1, z.edges + 1);
             }

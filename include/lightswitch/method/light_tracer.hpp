@@ -29,7 +29,7 @@ struct LightTracer {
         frame.paths(light_paths, [&](std::uint64_t, auto& sampler, auto& splatter) {
             const auto alone = [](const Contribution& contribution, int, int) { return contribution.value; };
             splat_light_subpath(scene, sampler, splatter, {{max_depth, rr_depth}}, double(light_paths), {}, alone,
-                                [](const PathVertex&) {});
+                                [](const auto&) {});
         });
     }
 };

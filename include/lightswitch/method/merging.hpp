@@ -18,7 +18,7 @@ struct Photon {
 };
 
 /// What a light path leaves at its vertex.
-inline Photon photon_at(const PathVertex& y) {
+inline Photon photon_at(const auto& y) {
     const float true_cosine = std::abs(dot(y.point.normal, y.point.wo));
     const float cosine = std::abs(dot(y.point.shading_normal, y.point.wo));
     return {y.point.position, y.point.wo, y.throughput * (cosine / true_cosine), y.edges};
@@ -26,7 +26,7 @@ inline Photon photon_at(const PathVertex& y) {
 
 /// The BSDF between the light that a photon brought and the direction that the camera path came from, with its
 /// densities.
-[[gnu::always_inline]] inline Turn photon_turn(const auto& scene, const SurfacePoint& at, const Arrival& arrival,
+[[gnu::always_inline]] inline Turn photon_turn(const auto& scene, const auto& at, const Arrival& arrival,
                                                const Photon& photon) {
     Turn result = turn<Transport::radiance>(scene, at, arrival, photon.from);
     // The photon brings its cosine along.
@@ -60,7 +60,7 @@ struct MergeRadius {
 /// nothing, what a pixel would be that had the scene's size as its share.
 double pixel_footprint(const auto& scene) {
     constexpr int side = 64;
-    const Camera& camera = scene.camera();
+    const auto& camera = connectable_camera(scene.camera());
     std::vector<double> widths;
     for (int i = 0; i < side * side; ++i) {
         const Vec2 at((static_cast<float>(i % side) + 0.5f) / side, (static_cast<float>(i / side) + 0.5f) / side);
@@ -83,7 +83,7 @@ inline MergeWeights merge_weights(double light_paths, double radius) {
 
 /// The photon `y`, taken as if it had arrived at the vertex `z` of a camera path; to be summed over all within the
 /// radius.
-[[gnu::always_inline]] inline Contribution merge(const auto& scene, const WeighedPhoton& y, const PathVertex& z,
+[[gnu::always_inline]] inline Contribution merge(const auto& scene, const WeighedPhoton& y, const auto& z,
                                                  const Arrival& at_z, const MergeWeights& weights) {
     const Turn at = photon_turn(scene, z.point, at_z, y);
     if (is_black(at.value)) return {};

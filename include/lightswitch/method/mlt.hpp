@@ -209,7 +209,7 @@ private:
     /// counts as black.
     Sample evaluate(const auto& frame, PrimarySample& sample, const State& state, int depth, Splatter* splatter) const {
         const auto& scene = frame.scene();
-        const Camera& camera = scene.camera();
+        const auto& camera = connectable_camera(scene.camera());
         PrimarySample::Reader control(sample, strategy_stream), on_camera(sample, camera_stream),
             on_light(sample, light_stream);
         const int strategies = depth + 1,
@@ -223,7 +223,7 @@ private:
         const Vec2 on_lens = camera.has_lens() ? on_camera.next_2d() : Vec2(0.5f);
 
         Sample result{.pixel = on_film * size - margin};
-        CameraSubpath z(t > 1 ? camera.ray(result.pixel, on_lens) : Ray(), area, {});
+        CameraSubpath<point_of<decltype(scene)>> z(t > 1 ? camera.ray(result.pixel, on_lens) : Ray(), area, {});
         bool escaped = false;
         for (int edges = 1; edges < t; ++edges) {
             escaped = !z.advance(scene);
@@ -239,7 +239,7 @@ private:
             const float choice = on_light.next_1d();
             found = connect_to_light(scene, z.vertex(), Arrival(z.vertex().point), choice, on_light.next_2d(), {});
         } else {
-            LightSubpath y(scene, on_light, {});
+            LightSubpath<point_of<decltype(scene)>> y(scene, on_light, {});
             if (is_black(y.carried())) return {};
             for (int edges = 1; edges < s; ++edges) {
                 if (!y.advance(scene)) return {};

@@ -32,7 +32,7 @@ struct Phong {
         for (const Emitter& emitter : scene.emitters()) {
             sum += terms.diffuse * inv_pi * ambient_irradiance(emitter);
             if (emitter.kind == Emitter::Kind::environment) continue;
-            const Arrival light = arrival(emitter, *hit);
+            const Arrival light = arrival(scene, emitter, *hit);
             const float cosine = dot(light.wi, normal);
             if (!(cosine > 0) || is_black(light.irradiance) || !visible(scene, *hit, emitter, light)) continue;
             const Vec3 mirrored = 2 * cosine * normal - light.wi;
@@ -50,8 +50,14 @@ private:
         Rgb irradiance;  // on a surface that faces the light
     };
 
-    static Arrival arrival(const Emitter& emitter, const SurfacePoint& at) {
+    static Arrival arrival(const auto& scene, const Emitter& emitter, const SurfacePoint& at) {
         if (emitter.kind == Emitter::Kind::directional) return {emitter.direction, emitter.direction, emitter.strength};
+        if (emitter.kind == Emitter::Kind::other) {
+            const LightSample light = scene.with_light(scene.light_of_number(emitter.first_light),
+                                                       [&](const auto& l) { return l.sample(at, Vec2(0.5f)); });
+            const bool far = light.visibility.far == infinity;
+            return {light.wi, far ? light.wi : light.visibility.direction, light.radiance};
+        }
         const Vec3 to_light = emitter.position - at.position;
         const float distance2 = length_squared(to_light);
         if (!(distance2 > 0)) return {Vec3(0), Vec3(0), Rgb(0)};
@@ -74,14 +80,16 @@ private:
             case Emitter::Kind::environment: return pi * emitter.strength;
             case Emitter::Kind::directional: return ambient / 4 * emitter.strength;
             case Emitter::Kind::point: return ambient * emitter.strength;
-            default: return ambient / 4 * emitter.area * emitter.strength;
+            case Emitter::Kind::surface: return ambient / 4 * emitter.area * emitter.strength;
+            default: return Rgb(0);  // nothing is known of its flux
         }
     }
 
     static bool visible(const auto& scene, const SurfacePoint& at, const Emitter& emitter, const Arrival& light) {
-        if (emitter.kind == Emitter::Kind::directional) return !scene.occluded(at.spawn(light.wi));
+        if (emitter.kind == Emitter::Kind::directional || light.to_light == light.wi)
+            return !scene.occluded(at.spawn(light.wi));
         const Ray segment = at.segment_to(at.position + light.to_light);
-        if (emitter.kind == Emitter::Kind::point) return !scene.occluded(segment);
+        if (emitter.kind != Emitter::Kind::surface) return !scene.occluded(segment);
         // The centroid of a curved light lies inside it: meeting the light itself is no shadow.
         const auto blocker = scene.intersect(segment);
         return !blocker || (blocker->light && belongs(scene.light_number(blocker->light), emitter));

@@ -57,7 +57,7 @@ struct PhotonMapping {
         frame.paths(light_paths, [&](std::uint64_t path, auto& sampler, auto&) {
             state.paths.start(path);
             trace_light_subpath(scene, sampler, {{max_depth, rr_depth}}, {},
-                                [&](const PathVertex& y) { state.paths.push(path, photon_at(y)); });
+                                [&](const auto& y) { state.paths.push(path, photon_at(y)); });
         });
         if (frame.stopped()) return;
         state.paths.list(state.photons, frame.executor(), [](const Photon& photon) { return photon; });
@@ -102,7 +102,7 @@ private:
     }
 
     /// Radiance that the photons around `at` bring towards `at.wo`, times the number of light paths.
-    Rgb estimate(const auto& scene, const SurfacePoint& at, int depth, const HashGrid<Photon>& map) const {
+    Rgb estimate(const auto& scene, const auto& at, int depth, const HashGrid<Photon>& map) const {
         Rgb sum(0);
         const Arrival arrival(at);
         map.for_each_near(at.position, [&](const Photon& photon) {
@@ -112,7 +112,7 @@ private:
         return map.radius() > 0 ? sum * (1 / (pi * square(map.radius()))) : Rgb(0);
     }
 
-    Rgb direct_light(const auto& scene, const SurfacePoint& at, float choice, const Vec2& place) const {
+    Rgb direct_light(const auto& scene, const auto& at, float choice, const Vec2& place) const {
         const LightSample light = scene.sample_light(at, choice, place);
         if (!(light.pdf.value > 0)) return Rgb(0);
         const Turn towards = turn<Transport::radiance>(scene, at, Arrival(at), light.wi);

@@ -8,10 +8,10 @@
 // densities.
 
 #include <lightswitch/bsdf/bsdf.hpp>
+#include <lightswitch/camera/camera.hpp>
 #include <lightswitch/light/light.hpp>
 #include <lightswitch/method/roulette.hpp>
 #include <lightswitch/render/path_classes.hpp>
-#include <lightswitch/scene/camera.hpp>
 
 namespace lightswitch {
 
@@ -40,10 +40,15 @@ struct PartialWeights {
     double merges = 0;       ///< the same sums as they stand against merging at the vertex
 };
 
+/// What `intersect` of a type of scene, or reference to one, finds: a `SurfacePoint` or more.
+template <class SceneType>
+using point_of = std::remove_cvref_t<decltype(*std::declval<SceneType>().intersect(Ray()))>;
+
 /// A vertex of a path, and what the path has carried to it.
+template <class Point>
 struct PathVertex {
-    SurfacePoint point;  ///< `wo` is where the path comes from
-    Rgb throughput{0};   ///< importance or power that arrives, over the density of the path
+    Point point;        ///< `wo` is where the path comes from
+    Rgb throughput{0};  ///< importance or power that arrives, over the density of the path
     PartialWeights weights;
     int edges = 0;  ///< segments from the start of the path to here
 };
@@ -80,8 +85,7 @@ template <Transport transport>
 
 /// `Turn` of the path at `at` towards `out` (unit). Black at a specular surface.
 template <Transport transport>
-[[gnu::always_inline]] inline Turn turn(const auto& scene, const SurfacePoint& at, const Arrival& arrival,
-                                        const Vec3& out) {
+[[gnu::always_inline]] inline Turn turn(const auto& scene, const auto& at, const Arrival& arrival, const Vec3& out) {
     const Vec3 from = arrival.from, to = arrival.basis.to_local(out);
     return scene.with_bsdf(
         at, [&](const auto& bsdf) __attribute__((always_inline)) {
@@ -100,7 +104,7 @@ template <Transport transport>
 
 /// A path as it grows from a light (`Transport::importance`) or from the camera (`Transport::radiance`). `advance` and
 /// `scatter` take turns: after `advance` the vertex at hand is complete, and `scatter` chooses how the path leaves it.
-template <Transport transport>
+template <Transport transport, class Point>
 class Subpath {
 public:
     /// From the camera, along a ray of `Camera::ray`; `light_paths` is how many light paths an iteration has.
@@ -131,7 +135,8 @@ public:
         if (vertex_.edges > 1) {
             w.last *= heuristic(square(hit->distance));
         } else if constexpr (transport == Transport::radiance) {
-            w.last = heuristic(light_paths_ / scene.camera().density(hit->position, ray_.direction));
+            w.last =
+                heuristic(light_paths_ / connectable_camera(scene.camera()).density(hit->position, ray_.direction));
         } else {
             w.last = heuristic(scene.spread(emission_.light, *hit, hit->wo, ray_.origin));
             if (!emission_.dirac) w.connections = heuristic(emission_.cosine / emission_.pdf.value);
@@ -147,7 +152,7 @@ public:
     /// Chooses the direction in which the path leaves the vertex; false when it ends there. `direction` and `choices.x`
     /// select the direction, `choices.y` is for Russian roulette after `rr_depth` bounces.
     [[gnu::always_inline]] bool scatter(const auto& scene, const Vec2& direction, const Vec2& choices, int rr_depth) {
-        const SurfacePoint& at = vertex_.point;
+        const Point& at = vertex_.point;
         const Arrival arrival(at);
         SolidAnglePdf reverse;
         const auto scattered = scene.with_bsdf(
@@ -184,7 +189,7 @@ public:
         return true;
     }
 
-    const PathVertex& vertex() const { return vertex_; }
+    const PathVertex<Point>& vertex() const { return vertex_; }
     const Ray& ray() const { return ray_; }
     /// Where the vertex before stands, and its normal on the side that the path came to.
     const Vec3& previous() const { return previous_; }
@@ -196,7 +201,7 @@ public:
 
 private:
     Ray ray_;
-    PathVertex vertex_;
+    PathVertex<Point> vertex_;
     Rgb start_{1}, beta_{1};
     float eta_ = 1;  // product of the relative indices of refraction crossed, for roulette
     Vec3 previous_{0}, previous_normal_{0};
@@ -205,11 +210,13 @@ private:
     LightEmission emission_;
 };
 
-using CameraSubpath = Subpath<Transport::radiance>;
-using LightSubpath = Subpath<Transport::importance>;
+template <class Point>
+using CameraSubpath = Subpath<Transport::radiance, Point>;
+template <class Point>
+using LightSubpath = Subpath<Transport::importance, Point>;
 
 /// Whether connections can end at the point.
-inline bool connectable(const auto& scene, const SurfacePoint& at) {
+inline bool connectable(const auto& scene, const auto& at) {
     return !scene.with_bsdf(at, [](const auto& bsdf) { return std::remove_cvref_t<decltype(bsdf)>::specular; });
 }
 
@@ -217,7 +224,7 @@ inline bool connectable(const auto& scene, const SurfacePoint& at) {
 /// when no path of the allowed length could come of it.
 void trace_light_subpath(const auto& scene, auto& sampler, const PathLimits& limits, const MergeWeights& merge_weights,
                          const auto& visit) {
-    LightSubpath path(scene, sampler, merge_weights);
+    LightSubpath<point_of<decltype(scene)>> path(scene, sampler, merge_weights);
     if (is_black(path.carried()) || (limits.left_out.dirac_light && path.from_dirac_light())) return;
     const bool caustic = !(limits.left_out.dirac_caustic && path.from_dirac_light());
     while ((limits.max_depth < 0 || path.vertex().edges + 2 <= limits.max_depth) && path.advance(scene)) {

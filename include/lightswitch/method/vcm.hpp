@@ -20,6 +20,8 @@ struct Vcm {
     int rr_depth = PathLength{}.rr_depth;    ///< of whole paths: each of the two that make one counts half as many
     MergeRadius radius = {};                 ///< with 0 pixels nothing is merged: bidirectional path tracing
 
+    /// Between iterations. `Point` is what a ray finds in the scene.
+    template <class Point>
     class State {
     public:
         /// Of the last iteration.
@@ -30,18 +32,19 @@ struct Vcm {
     private:
         friend Vcm;
         double footprint = 0;
-        PathRecords<PathVertex, paths_per_unit> paths;
+        PathRecords<PathVertex<Point>, paths_per_unit> paths;
         std::vector<WeighedPhoton> photons;
         HashGrid<WeighedPhoton> map;
     };
 
-    State start(auto& frame) const {
-        State state;
+    auto start(auto& frame) const {
+        State<point_of<decltype(frame.scene())>> state;
         state.footprint = pixel_footprint(frame.scene());
         return state;
     }
 
-    void iterate(auto& frame, State& state) const {
+    template <class Point>
+    void iterate(auto& frame, State<Point>& state) const {
         if (max_depth == 0) return;
         const auto& scene = frame.scene();
         const PathLimits limits{{max_depth, rr_depth / 2}};
@@ -57,17 +60,17 @@ struct Vcm {
         frame.paths(light_paths, [&](std::uint64_t path, auto& sampler, auto& splatter) {
             state.paths.start(path);
             splat_light_subpath(scene, sampler, splatter, limits, n, weights, count,
-                                [&](const PathVertex& y) { state.paths.push(path, y); });
+                                [&](const PathVertex<Point>& y) { state.paths.push(path, y); });
         });
         if (frame.stopped()) return;
         if (r > 0) {
-            state.paths.list(state.photons, frame.executor(), [](const PathVertex& y) {
+            state.paths.list(state.photons, frame.executor(), [](const PathVertex<Point>& y) {
                 return WeighedPhoton{photon_at(y), y.weights.last, y.weights.merges};
             });
             state.map.build(state.photons, r, frame.executor());
         }
         frame.pixels([&](const Ray& ray, auto& sampler, const PixelContext& pixel) {
-            const auto merge_around = [&](const PathVertex& z, const Arrival& at_z) {
+            const auto merge_around = [&](const PathVertex<Point>& z, const Arrival& at_z) {
                 Rgb sum(0);
                 state.map.for_each_near(z.point.position, [&](const WeighedPhoton& y) {
                     if (max_depth >= 0 && y.edges + z.edges > max_depth) return;

@@ -2,13 +2,12 @@
 
 // One iteration as a method sees it: the scene, and two verbs that run in parallel.
 
+#include <lightswitch/camera/camera.hpp>
 #include <lightswitch/core/parallel.hpp>
-#include <lightswitch/core/ray_count.hpp>
 #include <lightswitch/core/sampler.hpp>
 #include <lightswitch/film/film.hpp>
-#include <lightswitch/film/filter.hpp>
 #include <lightswitch/geometry/ray.hpp>
-#include <lightswitch/scene/camera.hpp>
+#include <lightswitch/render/splatter.hpp>
 
 #include <algorithm>
 #include <concepts>
@@ -18,124 +17,9 @@
 
 namespace lightswitch {
 
-/// A value or a ray that was not finite, and how to meet it again: render that one pixel with that seed and iteration.
-struct NonFinite {
-    std::uint64_t iteration = 0;
-    std::uint64_t seed = 0;
-    std::uint32_t pixel = 0;  ///< row * width + column; 0 also for what belongs to none, like a ray of a light path
-
-    friend auto operator<=>(const NonFinite&, const NonFinite&) = default;
-};
-
-/// Counts over all iterations.
-struct RenderCounts {
-    std::uint64_t rays = 0;         ///< closest-hit and visibility rays
-    std::uint64_t shadow_rays = 0;  ///< visibility rays among them
-    std::uint64_t paths = 0;        ///< light paths started by `Frame::paths`
-    std::uint64_t splats = 0;
-    /// Contributions that were not finite, replaced by black, and rays that Embree must not see
-    /// (`embree::Accelerator`), which meet nothing.
-    std::uint64_t non_finite = 0;
-    std::vector<NonFinite> first_non_finite;  ///< the first 16 of them, in the order of iteration and pixel
-};
-
 /// Light paths of `Frame::paths` with consecutive numbers from a multiple of this one on are traced in order by one
 /// thread.
 inline constexpr std::uint64_t paths_per_unit = 1024;
-
-namespace detail {
-
-inline constexpr std::size_t max_noted = 16;
-
-/// What one work unit found out; units share nothing while they run.
-struct UnitReport {
-    std::uint64_t rays = 0, shadow_rays = 0, non_finite = 0;
-    std::vector<NonFinite> where;  // the first of them
-
-    void note(const NonFinite& found, std::uint64_t times = 1) {
-        non_finite += times;
-        for (; times > 0 && where.size() < max_noted; --times) [[unlikely]] where.push_back(found);
-    }
-};
-
-/// Counts the rays of a unit by the thread's counters before and after.
-class UnitScope {
-public:
-    explicit UnitScope(UnitReport& report) : report_(report), before_(ray_count) {}
-    ~UnitScope() {
-        const auto& now = ray_count;
-        report_.shadow_rays += now.occluded - before_.occluded;
-        report_.rays += now.occluded - before_.occluded + now.intersect - before_.intersect;
-    }
-    UnitScope(const UnitScope&) = delete;
-    UnitScope& operator=(const UnitScope&) = delete;
-
-private:
-    UnitReport& report_;
-    RayCount before_;
-    FlushDenormals flush_;
-};
-
-}  // namespace detail
-
-/// Collects the splats of one work unit.
-class Splatter {
-public:
-    Splatter(std::vector<Splat>& splats, detail::UnitReport& report, const Film& film, const Filter& filter,
-             std::uint64_t iteration, std::uint64_t seed)
-        : splats_(&splats),
-          report_(&report),
-          width_(film.width()),
-          height_(film.height()),
-          filter_(filter),
-          iteration_(iteration),
-          seed_(seed) {}
-
-    /// Adds `value` at the point `at` (columns and rows from the top left corner of the film) to the pixels around it,
-    /// by the weights of the film's filter: with the box, to the pixel that holds the point. `value` is the integrand
-    /// over the area of the film (in pixels) divided by the density of `at`. What is off the film is ignored; what is
-    /// not finite is counted and dropped.
-    void splat(const Vec2& at, const Rgb& value) {
-        const bool finite = is_finite(value);
-        if (filter_.kind() == Filter::Kind::box) {
-            if (at.x >= 0 && at.y >= 0 && at.x < static_cast<float>(width_) && at.y < static_cast<float>(height_))
-                [[likely]]
-                add(static_cast<int>(at.x), static_cast<int>(at.y), value, finite);
-            else if (!(is_finite(at.x) && is_finite(at.y))) add(0, 0, value, false);
-            return;
-        }
-        if (!(is_finite(at.x) && is_finite(at.y))) return add(0, 0, value, false);
-        // Pixels whose centres are within the radius.
-        const float r = filter_.radius();
-        const auto first = [&](float x) { return static_cast<int>(std::ceil(std::max(x - r - 0.5f, 0.0f))); };
-        const auto last = [&](float x, int size) {
-            return static_cast<int>(std::floor(std::clamp(x + r - 0.5f, -1.0f, static_cast<float>(size - 1))));
-        };
-        const int x1 = last(at.x, width_), y1 = last(at.y, height_);
-        if (!(at.x - r < static_cast<float>(width_) && at.y - r < static_cast<float>(height_))) return;
-        for (int y = first(at.y); y <= y1; ++y)
-            for (int x = first(at.x); x <= x1; ++x) {
-                const float weight = filter_.pdf(at - Vec2(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f));
-                if (weight > 0) add(x, y, weight * value, finite);
-                if (!finite) return;
-            }
-    }
-
-private:
-    void add(int x, int y, const Rgb& value, bool finite) {
-        const auto pixel =
-            static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(width_) + static_cast<std::uint32_t>(x);
-        if (finite) [[likely]]
-            splats_->push_back({pixel, value});
-        else report_->note({iteration_, seed_, pixel});
-    }
-
-    std::vector<Splat>* splats_;
-    detail::UnitReport* report_;
-    int width_, height_;
-    Filter filter_;
-    std::uint64_t iteration_, seed_;
-};
 
 /// What a method that wants more than a ray is told about the pixel at hand.
 struct PixelContext {
@@ -143,21 +27,32 @@ struct PixelContext {
     Splatter& splatter;  ///< for contributions to other pixels
 };
 
+/// What an iteration is made of. What it refers to must outlive the frame.
+template <class SceneType, Executor E>
+struct FrameContext {
+    const SceneType& scene;
+    Film& film;
+    const E& executor;
+    Sampling sampling;
+    std::uint64_t seed, iteration;
+    std::stop_token stop;
+    RenderCounts& counts;
+};
+
 /// The view that a method has of a render: one iteration of it. Made by the loop.
 template <class SceneType, Executor E>
 class Frame {
 public:
-    Frame(const SceneType& scene, Film& film, const E& executor, const Filter& filter, Sampling sampling,
-          std::uint64_t seed, std::uint64_t iteration, std::stop_token stop, RenderCounts& counts)
-        : scene_(scene),
-          film_(film),
-          executor_(executor),
-          filter_(filter),
-          sampling_(sampling),
-          seed_(seed),
-          iteration_(iteration),
-          stop_(std::move(stop)),
-          counts_(counts) {}
+    explicit Frame(const FrameContext<SceneType, E>& context)
+        : scene_(context.scene),
+          film_(context.film),
+          executor_(context.executor),
+          filter_(context.scene.film().filter),
+          sampling_(context.sampling),
+          seed_(context.seed),
+          iteration_(context.iteration),
+          stop_(context.stop),
+          counts_(context.counts) {}
 
     /// The iteration number of the frame that `start` is given: what it draws belongs to no iteration.
     static constexpr std::uint64_t before_the_first = ~std::uint64_t{0};
@@ -274,7 +169,7 @@ private:
         const Vec2 u = sampler.next_2d();
         const Vec2 offset = filter_.kind() == Filter::Kind::box ? u - 0.5f : filter_.sample(u);
         const Vec2 position(static_cast<float>(x) + 0.5f + offset.x, static_cast<float>(y) + 0.5f + offset.y);
-        const Camera& camera = scene_.camera();
+        const auto& camera = scene_.camera();
         const Ray ray = camera.ray(position, camera.has_lens() ? sampler.next_2d() : Vec2(0.5f));
         const std::uint64_t refused = ray_count.refused;
         Rgb value;

@@ -4,6 +4,7 @@
 
 #include <lightswitch/core/math.hpp>
 #include <lightswitch/core/sampler.hpp>
+#include <lightswitch/film/filter.hpp>
 #include <lightswitch/geometry/ray.hpp>
 #include <lightswitch/render/path_classes.hpp>
 
@@ -27,11 +28,16 @@ constexpr std::string_view name(Kind kind) {
     }
 }
 
-/// What rendering itself asks of a scene; what methods ask for is between them and the scene.
+/// What rendering asks of a scene, and every method may: the camera and film by which it is seen, and what rays meet.
+/// `Scene` is one; so is anything that stands before one, such as a scene that counts its rays. What else a method asks
+/// for (surfaces, lights) is between it and the scene: see the members of `Scene`.
 template <class S>
-concept RenderableScene = requires(const S scene) {
-    scene.camera();
-    scene.film();
+concept SceneView = requires(const S scene, const Ray ray) {
+    { scene.camera().ray(Vec2(), Vec2()) } -> std::same_as<Ray>;
+    { scene.camera().width() } -> std::convertible_to<int>;
+    { scene.film().filter } -> std::convertible_to<Filter>;
+    { static_cast<bool>(scene.intersect(ray)) } -> std::same_as<bool>;
+    { scene.occluded(ray) } -> std::convertible_to<bool>;
     { scene.name() } -> std::convertible_to<std::string_view>;
     { scene.camera_id() } -> std::convertible_to<std::string_view>;
 };
@@ -42,7 +48,7 @@ namespace detail {
 template <class S>
 struct RequireScene {
     static_assert(
-        RenderableScene<S>,
+        SceneView<S>,
         "what is rendered must be a scene, such as `stock::cornell_box()` or what `build_scene` returns (std::visit "
         "gives the one in an `AnyScene`), and comes before the method");
     static constexpr bool value = true;

@@ -172,8 +172,14 @@ private:
     decltype(auto) image_method() const { return detail::as_image_method<FrameType, SceneType>(method_); }
 
     FrameType frame(std::uint64_t iteration) {
-        return {scene_,         film_,     executor_,      scene_.film().filter, settings_.sampling,
-                settings_.seed, iteration, settings_.stop, statistics_.counts};
+        return FrameType({.scene = scene_,
+                          .film = film_,
+                          .executor = executor_,
+                          .sampling = settings_.sampling,
+                          .seed = settings_.seed,
+                          .iteration = iteration,
+                          .stop = settings_.stop,
+                          .counts = statistics_.counts});
     }
 
     static void check(const Budget& budget) {

@@ -10,53 +10,51 @@
 
 namespace lightswitch {
 
-using DiffuseBsdfs = Bsdfs<Lambert, TwoSided<Lambert>>;
-using AllBsdfs = Bsdfs<Lambert, TwoSided<Lambert>, Conductor, TwoSided<Conductor>, RoughConductor,
-                       TwoSided<RoughConductor>, Dielectric>;
+using DiffuseBsdfs = Bsdfs<Lambert>;
+using AllBsdfs = Bsdfs<Lambert, Conductor, RoughConductor, Dielectric>;
+
+/// The same with any parameter of a model from a texture.
+using TexturedBsdfs = Bsdfs<Textured<Lambert>, Textured<Conductor>, Textured<RoughConductor>, Textured<Dielectric>>;
 
 /// Diffuse surfaces, luminous triangles.
 using DiffuseScene = Scene<DiffuseBsdfs, Lights<TriangleLight>>;
-/// The same under an environment.
-using DiffuseSkyScene = Scene<DiffuseBsdfs, Lights<ConstantEnvironment, TriangleLight>>;
-/// Everything that the library has.
+/// Everything that the library has, but textures.
 using FullScene = Scene<AllBsdfs, AllLights>;
+/// Everything that the library has.
+using TexturedScene = Scene<TexturedBsdfs, AllLights>;
 
-/// The scene types that a file can become. One `std::visit` per render chooses among them.
-using AnyScene = std::variant<DiffuseScene, DiffuseSkyScene, FullScene>;
+/// The scene types that a file can become. One `std::visit` per render chooses among them. Each costs a compilation of
+/// every method, so only types that make renders more than 5 % faster are here (`bench/dispatch`).
+using AnyScene = std::variant<DiffuseScene, FullScene, TexturedScene>;
 
 /// What the program prints for each alternative of `AnyScene`.
 inline std::string_view scene_type_name(const AnyScene& scene) {
-    constexpr std::string_view names[] = {"diffuse: Scene<Bsdfs<Lambert, TwoSided<Lambert>>, Lights<TriangleLight>>",
-                                          "diffuse-sky: Scene<Bsdfs<Lambert, TwoSided<Lambert>>, "
-                                          "Lights<ConstantEnvironment, TriangleLight>>",
-                                          "full: Scene<AllBsdfs, AllLights>"};
+    constexpr std::string_view names[] = {"diffuse: Scene<Bsdfs<Lambert>, Lights<TriangleLight>>",
+                                          "full: Scene<AllBsdfs, AllLights>",
+                                          "textured: Scene<TexturedBsdfs, AllLights>"};
     static_assert(std::size(names) == std::variant_size_v<AnyScene>);
     return names[scene.index()];
 }
 
 namespace detail {
 
-template <class BsdfList, class LightList>
+template <class SceneType>
 struct Capacity;
 
-template <class... B, class... L>
-struct Capacity<Bsdfs<B...>, Lights<L...>> {
+template <class... B, class... L, class... C>
+struct Capacity<Scene<Bsdfs<B...>, Lights<L...>, Cameras<C...>>> {
     static bool holds(const LibraryDescription& scene) {
         for (const auto& material : scene.materials)
-            if (!std::visit([](const auto& bsdf) { return contains<std::remove_cvref_t<decltype(bsdf)>, B...>; },
+            if (!std::visit([](const auto& bsdf) { return is_one_of<std::remove_cvref_t<decltype(bsdf)>, B...>; },
                             material.bsdf))
                 return false;
-        for (const auto& placed : scene.sources) {
-            if (std::holds_alternative<PointSource>(placed.source) && !contains<PointLight, L...>) return false;
-            if (std::holds_alternative<DirectionalSource>(placed.source) && !contains<DirectionalLight, L...>)
-                return false;
-            if (std::holds_alternative<EnvironmentSource>(placed.source) && !contains<ConstantEnvironment, L...>)
-                return false;
-        }
+        for (const auto& placed : scene.sources)
+            if (!((placed.source.light_type() == typeid(L)) || ...)) return false;
+        if (!(C::serves(scene.camera) || ...)) return false;
         for (const auto& shape : scene.shapes) {
             if (!shape.emission) continue;
             const bool sphere = std::holds_alternative<Sphere>(shape.geometry);
-            if (sphere ? !contains<SphereLight, L...> : !contains<TriangleLight, L...>) return false;
+            if (sphere ? !is_one_of<SphereLight, L...> : !is_one_of<TriangleLight, L...>) return false;
         }
         return true;
     }
@@ -66,11 +64,10 @@ struct Capacity<Bsdfs<B...>, Lights<L...>> {
 
 /// Builds the smallest of the alternatives of `AnyScene` that can hold the description. Throws like `build_scene`.
 inline AnyScene build_any(const LibraryDescription& description, const BuildOptions& options = {}) {
-    if (detail::Capacity<DiffuseBsdfs, Lights<TriangleLight>>::holds(description))
+    if (detail::Capacity<DiffuseScene>::holds(description))
         return build_scene<DiffuseBsdfs, Lights<TriangleLight>>(description, options);
-    if (detail::Capacity<DiffuseBsdfs, Lights<ConstantEnvironment, TriangleLight>>::holds(description))
-        return build_scene<DiffuseBsdfs, Lights<ConstantEnvironment, TriangleLight>>(description, options);
-    return build_scene<AllBsdfs, AllLights>(description, options);
+    if (detail::Capacity<FullScene>::holds(description)) return build_scene<AllBsdfs, AllLights>(description, options);
+    return build_scene<TexturedBsdfs, AllLights>(description, options);
 }
 
 }  // namespace lightswitch

@@ -2,13 +2,11 @@
 
 // From a description to a scene: every check, then render space, records, lights and Embree.
 
-#include <lightswitch/light/constant_environment.hpp>
-#include <lightswitch/light/directional_light.hpp>
-#include <lightswitch/light/point_light.hpp>
 #include <lightswitch/light/sphere_light.hpp>
 #include <lightswitch/light/triangle_light.hpp>
 #include <lightswitch/scene/check.hpp>
 #include <lightswitch/scene/description.hpp>
+#include <lightswitch/scene/rounding.hpp>
 #include <lightswitch/scene/scene.hpp>
 
 #include <chrono>
@@ -17,7 +15,8 @@
 namespace lightswitch {
 
 /// Every kind of light that a description can ask for.
-using AllLights = Lights<ConstantEnvironment, DirectionalLight, PointLight, SphereLight, TriangleLight>;
+using AllLights =
+    Lights<ConstantEnvironment, MappedEnvironment, DirectionalLight, PointLight, SpotLight, SphereLight, TriangleLight>;
 
 /// How a scene is built.
 struct BuildOptions {
@@ -27,13 +26,13 @@ struct BuildOptions {
 
 namespace detail {
 
-template <class BsdfList, class LightList>
+template <class BsdfList, class LightList, class CameraList>
 class SceneAssembly;
 
-template <class... B, class... L>
-class SceneAssembly<Bsdfs<B...>, Lights<L...>> {
+template <class... B, class... L, class CameraList>
+class SceneAssembly<Bsdfs<B...>, Lights<L...>, CameraList> {
 public:
-    using BuiltScene = Scene<Bsdfs<B...>, Lights<L...>>;
+    using BuiltScene = Scene<Bsdfs<B...>, Lights<L...>, CameraList>;
 
     explicit SceneAssembly(const BuildOptions& options) : accelerator_(options.embree_config) {
         data_.statistics.robust = options.robust;
@@ -45,12 +44,9 @@ public:
         check(description);
         const Bounds bounds = find_bounds(description);
         data_.name = description.name;
-        data_.film = description.film;
         data_.space = RenderSpace(bounds.lower, bounds.upper);
-        data_.camera_id = camera_id(description.camera, description.film);
-        radius_ = glm::length(data_.space.point(bounds.upper));
-        Camera camera(description.camera, description.film, data_.space, radius_);
-        for (const auto& material : description.materials) add(material.bsdf, material.origin);
+        data_.radius = glm::length(data_.space.point(bounds.upper));
+        for (const auto& material : description.materials) add(material.bsdf, material.two_sided, material.origin);
         for (const auto& source : description.sources) add(source.source, source.origin);
         for (const auto& shape : description.shapes)
             std::visit([&](const auto& geometry) { add(geometry, shape); }, shape.geometry);
@@ -63,29 +59,40 @@ public:
         statistics.embree_build_seconds = accelerator_.build_seconds();
         statistics.scene_bytes = static_cast<std::int64_t>(
             data_.meshes.size() * sizeof(MeshRecord) + data_.spheres.size() * sizeof(SphereRecord) +
-            data_.shading_normals.size() * sizeof(data_.shading_normals[0]) +
+            data_.shading_normals.size() * sizeof(data_.shading_normals[0]) + data_.uvs.size() * sizeof(data_.uvs[0]) +
             ((std::get<std::vector<L>>(data_.lights).size() * sizeof(L)) + ... + 0));
         statistics.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        return {std::move(data_), std::move(camera), std::move(accelerator_)};
+        return {std::move(data_), std::move(accelerator_), description.camera, description.film};
     }
 
 private:
     // --- materials
 
     template <class... M>
-    void add(const std::variant<M...>& material, const Origin& origin) {
-        std::visit([&](const auto& bsdf) { add(bsdf, origin); }, material);
+    void add(const std::variant<M...>& material, bool two_sided, const Origin& origin) {
+        std::visit([&](const auto& bsdf) { add(bsdf, two_sided, origin); }, material);
     }
-    template <Bsdf M>
-    void add(const M& bsdf, const Origin& origin) {
-        constexpr std::size_t kind = index_of<M, B...>();
+    template <Material M>
+    void add(const M& material, bool two_sided, const Origin& origin) {
+        constexpr std::size_t itself = index_of<M, B...>();
+        // Or what can be made of it, such as `Textured<M>`.
+        constexpr std::size_t kind =
+            itself < sizeof...(B) ? itself : first_of<std::is_constructible_v<B, const M&>...>();
         if constexpr (kind == sizeof...(B)) {
             fail(origin, "this scene type has no place for that surface model; add it to the scene's Bsdfs<...>");
         } else {
             auto& list = std::get<kind>(data_.bsdfs);
-            materials_.push_back(checked_index(kind, list.size(), origin, "surface models"));
-            list.push_back(bsdf);
+            check_count(list.size(), MaterialIndex::max_position, origin, "surface models");
+            materials_.emplace_back(kind, list.size(), two_sided);
+            list.emplace_back(material);
         }
+    }
+    /// The position of the first true value, or their number.
+    template <bool... values>
+    static constexpr std::size_t first_of() {
+        std::size_t position = 0;
+        static_cast<void>(((values || (++position, false)) || ...));
+        return position;
     }
 
     // --- lights
@@ -94,39 +101,29 @@ private:
     TypedIndex add_light(const NewLight& light, const Origin& origin) {
         constexpr std::size_t kind = index_of<NewLight, L...>();
         if constexpr (kind == sizeof...(L)) {
-            fail(origin, "this scene type has no place for that kind of light; add it to the scene's Lights<...>");
+            no_place_for_light(origin);
         } else {
             auto& list = std::get<kind>(data_.lights);
-            const TypedIndex index = checked_index(kind, list.size(), origin, "lights");
+            check_count(list.size(), TypedIndex::max_position, origin, "lights");
+            const TypedIndex index(kind, list.size());
             list.push_back(light);
             return index;
         }
     }
 
+    [[noreturn]] static void no_place_for_light(const Origin& origin) {
+        fail(origin, "this scene type has no place for that kind of light; add it to the scene's Lights<...>");
+    }
+
     void add(const Source& source, const Origin& origin) {
-        std::visit([&](const auto& s) { add(s, origin); }, source);
-    }
-    void add(const PointSource& source, const Origin& origin) {
-        // Irradiance is intensity over distance squared, and distances are multiplied by the scale.
-        const double scale2 = data_.space.scale() * data_.space.scale();
-        const DVec3 position = data_.space.point(source.position), intensity = DVec3(source.intensity) * scale2;
-        if (!(glm::length(position) < 1e18)) fail(origin, "the light is too far away beside the size of the scene");
-        if (!(glm::length(intensity) < 1e30))
-            fail(origin, "the light's intensity is too high beside the size of the scene");
-        const PointLight light{Vec3(position), Rgb(intensity)};
-        pending_.push_back({add_light(light, origin), 1});
-        data_.emitters.push_back(
-            {.kind = Emitter::Kind::point, .strength = light.intensity, .position = light.position});
-    }
-    void add(const DirectionalSource& source, const Origin& origin) {
-        const DirectionalLight light{Vec3(-glm::normalize(source.direction)), source.irradiance, float(radius_)};
-        pending_.push_back({add_light(light, origin), 1});
-        data_.emitters.push_back(
-            {.kind = Emitter::Kind::directional, .strength = light.irradiance, .direction = light.towards});
-    }
-    void add(const EnvironmentSource& source, const Origin& origin) {
-        pending_.push_back({add_light(ConstantEnvironment{source.radiance, float(radius_)}, origin), 1});
-        data_.emitters.push_back({.kind = Emitter::Kind::environment, .strength = source.radiance});
+        const auto take = [&](const void* light, const Emitter& emitter) {
+            const bool known = ((source.light_type() == typeid(L) &&
+                                 (pending_.push_back({add_light(*static_cast<const L*>(light), origin), 1}), true)) ||
+                                ...);
+            if (!known) no_place_for_light(origin);
+            data_.emitters.push_back(emitter);
+        };
+        source.make(data_.space, data_.radius, origin, take);
     }
 
     /// Numbers the lights and decides how often each is chosen: half by power, half evenly among the emitters, because
@@ -170,6 +167,9 @@ private:
                           .first_light = {},
                           .intersection_error = 0,
                           .shading_normals = MeshRecord::flat};
+        constexpr bool placed = BuiltScene::placed;
+        const bool keep_uvs = placed && !mesh.uvs.empty();
+        const auto first_uvs = static_cast<std::uint32_t>(data_.uvs.size());
         if (!mesh.normals.empty()) record.shading_normals = static_cast<std::uint32_t>(data_.shading_normals.size());
         Emitter emitter{.strength = shape.emission.value_or(Rgb(0))};
         DVec3 centroid(0);
@@ -179,19 +179,21 @@ private:
             const DVec3 a = positions[corners[0]], b = positions[corners[1]], c = positions[corners[2]];
             const DVec3 cross = glm::cross(b - a, c - a);
             const double twice_area = glm::length(cross);
-            if (!(twice_area >= smallest * smallest)) {  // nothing can hit it, and it has no normal
+            if (!(twice_area >= smallest_shape * smallest_shape)) {  // nothing can hit it, and it has no normal
                 ++data_.statistics.degenerate_triangles;
                 lost = lost || has_area(mesh, corners);
                 continue;
             }
             triangles.push_back(corners);
             mesh_area += twice_area;
-            if (slenderness(a, b, c, twice_area) > needle) needle_area += twice_area;
+            if (slenderness(a, b, c, twice_area) > needle_slenderness) needle_area += twice_area;
             record.intersection_error = std::max(record.intersection_error, intersection_error(a, b, c, twice_area));
             if (!mesh.normals.empty())
                 data_.shading_normals.push_back({Vec3(glm::normalize(mesh.normals[corners[0]])),
                                                  Vec3(glm::normalize(mesh.normals[corners[1]])),
                                                  Vec3(glm::normalize(mesh.normals[corners[2]]))});
+            const auto uv = [&](std::uint32_t i) { return i < mesh.uvs.size() ? mesh.uvs[i] : Vec2(0); };
+            if (keep_uvs) data_.uvs.push_back({uv(corners[0]), uv(corners[1]), uv(corners[2])});
             if (shape.emission) {
                 const double area = twice_area / 2;
                 const Vec3 normal(cross / twice_area);
@@ -223,6 +225,7 @@ private:
         data_.statistics.triangles += triangles.size();
         accelerator_.add(positions, triangles);
         data_.meshes.push_back(record);
+        if (placed) data_.first_uvs.push_back(keep_uvs ? first_uvs : MeshRecord::flat);
     }
 
     template <class Shape>
@@ -235,9 +238,9 @@ private:
                             .side = sphere.inward ? -1.0f : 1.0f,
                             .material = materials_[shape.material],
                             .light = {}};
-        if (!(record.radius >= smallest))
+        if (!(record.radius >= smallest_shape))
             fail(shape.origin, "the sphere is too small to be seen beside the rest of the scene");
-        if (!(glm::length(center) + radius <= 1.001 * radius_))
+        if (!(glm::length(center) + radius <= 1.001 * data_.radius))
             fail(shape.origin,
                  "the sphere is so far from the origin that its radius is lost in the rounding of its coordinates");
         if (shape.emission) {
@@ -248,6 +251,7 @@ private:
                 {.strength = *shape.emission, .position = record.center, .area = 4 * pi * square(record.radius)});
         }
         data_.spheres.push_back(record);
+        if (BuiltScene::placed) data_.sphere_axes.push_back(Mat3(glm::transpose(sphere.axes)));
         spheres_.push_back({record.center, record.radius});
     }
 
@@ -257,50 +261,13 @@ private:
         return glm::length(glm::cross(corner(1) - corner(0), corner(2) - corner(0))) > 0;
     }
 
-    /// The radius, and edge, below which a shape in render space is no longer one: a density on it, times the square of
-    /// the distance to it, would leave the range of a float at angles that are not grazing.
-    static constexpr double smallest = 0x1p-50;
-
-    /// Bound on how far from a triangle's plane Embree may see it, for a ray that starts on the plane: the rounding of
-    /// the dot product of the normal with the edge from a corner to the origin. It grows with the size of the triangle,
-    /// and with how thin it is, because then the normal itself is a difference of large numbers.
-    static float intersection_error(const DVec3& a, const DVec3& b, const DVec3& c, double twice_area) {
-        const double edge1 = glm::length(b - a), edge2 = glm::length(c - a);
-        const double longest = std::max(edge1, std::max(edge2, glm::length(c - b)));
-        const double thinness = std::min(edge1 * edge2 / twice_area, 16.0);
-        return static_cast<float>(double(gamma_bound(4)) * longest * thinness);
-    }
-
-    /// The length of a triangle over its height. Beyond `needle` Embree's fast test is too inexact to bound: of the
-    /// rays that leave such triangles, one in 1000 at 1:100 and one in 20 at 1:1000 was seen to hit them again, and one
-    /// in 10^5 with its watertight test. A mesh that owes more than a hundredth of its area to them makes the scene use
-    /// that test.
-    static double slenderness(const DVec3& a, const DVec3& b, const DVec3& c, double twice_area) {
-        const DVec3 ab = b - a, bc = c - b, ca = a - c;
-        return std::max(glm::dot(ab, ab), std::max(glm::dot(bc, bc), glm::dot(ca, ca))) / twice_area;
-    }
-    static constexpr double needle = 100;
-
-    /// Bound on how far from the plane a point lies that is interpolated between the corners (pbrt-v4, section 6.8.4).
-    static float position_error(const DVec3& a, const DVec3& b, const DVec3& c, const Vec3& normal) {
-        const DVec3 largest = glm::max(glm::abs(a), glm::max(glm::abs(b), glm::abs(c)));
-        return static_cast<float>(double(gamma_bound(8)) * glm::dot(glm::abs(DVec3(normal)), largest));
-    }
-
-    /// The same for a sphere: rounding of the centre, of the projected point, and of Embree's discriminant.
-    static float sphere_offset(const DVec3& center, double radius) {
-        const DVec3 c = glm::abs(center);
-        return static_cast<float>(double(gamma_bound(8)) * (std::max(c.x, std::max(c.y, c.z)) + radius));
-    }
-
     struct PendingEmitter {
         TypedIndex light;
         std::size_t count;
     };
 
     typename BuiltScene::Data data_;
-    double radius_ = 1;
-    std::vector<TypedIndex> materials_;
+    std::vector<MaterialIndex> materials_;
     std::vector<PendingEmitter> pending_;
     std::vector<embree::Accelerator::SphereData> spheres_;
     embree::Accelerator accelerator_;
@@ -312,11 +279,12 @@ private:
 ///
 /// Throws `Error`, naming the place in the file if there is one, when something in the description is impossible or
 /// when the type has no room for it. Beside what Embree takes the scene keeps 36 bytes per triangle with interpolated
-/// normals, and nothing per flat one.
-template <class BsdfList, class LightList = AllLights, class Material>
-Scene<BsdfList, LightList> build_scene(const SceneDescription<Material>& description,
-                                       const BuildOptions& options = {}) {
-    return detail::SceneAssembly<BsdfList, LightList>(options).build(description);
+/// normals and 24 per triangle with texture coordinates in a scene type with materials that use them, and nothing per
+/// flat one.
+template <class BsdfList, class LightList = AllLights, class CameraList = AllCameras, class Material>
+Scene<BsdfList, LightList, CameraList> build_scene(const SceneDescription<Material>& description,
+                                                   const BuildOptions& options = {}) {
+    return detail::SceneAssembly<BsdfList, LightList, CameraList>(options).build(description);
 }
 
 }  // namespace lightswitch

@@ -3,6 +3,7 @@
 // What can be wrong with a scene description, said in words.
 
 #include <lightswitch/bsdf/bsdf.hpp>
+#include <lightswitch/camera/camera.hpp>
 #include <lightswitch/core/dispatch.hpp>
 #include <lightswitch/film/image.hpp>
 #include <lightswitch/scene/description.hpp>
@@ -11,29 +12,42 @@
 
 namespace lightswitch::detail {
 
-/// Coordinates beyond this would overflow when they are squared.
-inline constexpr double largest_coordinate = 1e100;
-
 inline void check_position(const DVec3& p, const Origin& origin, const std::string& what) {
-    if (!is_finite(p)) fail(origin, what + " is not a finite number");
-    if (glm::any(glm::greaterThan(glm::abs(p), DVec3(largest_coordinate)))) fail(origin, what + " is beyond 1e100");
+    if (const std::string problem = position_problem(p, what); !problem.empty()) fail(origin, problem);
 }
 
-inline void check_radiance(const Rgb& value, const Origin& origin, const std::string& what) {
-    for (int c = 0; c < 3; ++c) {
-        if (!is_finite(value[c])) fail(origin, what + " is not a finite number");
-        if (value[c] < 0) fail(origin, what + " is negative");
-        if (value[c] > 1e30f) fail(origin, what + " is above 1e30");
+/// FNV-1a over numbers.
+class NumberHash {
+public:
+    void mix(double value) {
+        auto bits = std::bit_cast<std::uint64_t>(value);
+        for (int byte = 0; byte < 8; ++byte, bits >>= 8) hash_ = (hash_ ^ (bits & 0xff)) * 0x100000001b3u;
     }
-}
+    std::string text() const {
+        char text[20];
+        std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash_));
+        return text;
+    }
+
+private:
+    std::uint64_t hash_ = 0xcbf29ce484222325u;
+};
 
 inline void check(const Mesh& mesh, const Origin& origin) {
     if (mesh.triangles.empty()) fail(origin, "the mesh has no triangles");
     if (!mesh.normals.empty() && mesh.normals.size() != mesh.positions.size())
         fail(origin, "the mesh has " + std::to_string(mesh.positions.size()) + " vertices but " +
                          std::to_string(mesh.normals.size()) + " normals");
+    if (mesh.uvs.size() > mesh.positions.size())
+        fail(origin, "the mesh has " + std::to_string(mesh.positions.size()) + " vertices but " +
+                         std::to_string(mesh.uvs.size()) + " texture coordinates");
+    for (std::size_t i = 0; i < mesh.uvs.size(); ++i)
+        if (!is_finite(mesh.uvs[i].x) || !is_finite(mesh.uvs[i].y))
+            fail(origin, "texture coordinate " + std::to_string(i) + " is not a finite number");
     for (std::size_t i = 0; i < mesh.positions.size(); ++i)
-        check_position(mesh.positions[i], origin, "vertex " + std::to_string(i));
+        if (const DVec3 p = glm::abs(mesh.positions[i]);
+            !(std::max({p.x, p.y, p.z}) <= largest_coordinate) || !is_finite(p))
+            check_position(p, origin, "vertex " + std::to_string(i));
     for (std::size_t i = 0; i < mesh.normals.size(); ++i)
         if (!is_finite(mesh.normals[i]) || !(glm::length(mesh.normals[i]) > 0))
             fail(origin, "normal " + std::to_string(i) + " is not a direction");
@@ -46,21 +60,12 @@ inline void check(const Mesh& mesh, const Origin& origin) {
 
 inline void check(const Sphere& sphere, const Origin& origin) {
     check_position(sphere.center, origin, "the sphere's centre");
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j <= i; ++j)
+            if (!(std::abs(glm::dot(sphere.axes[i], sphere.axes[j]) - (i == j ? 1 : 0)) < 1e-3))
+                fail(origin, "the sphere's axes must be of unit length and at right angles");
     if (!is_finite(sphere.radius) || !(sphere.radius > 0) || sphere.radius > largest_coordinate)
         fail(origin, "the sphere's radius of " + number_text(sphere.radius) + " is not a positive length");
-}
-
-inline void check(const PointSource& source, const Origin& origin) {
-    check_position(source.position, origin, "the light's position");
-    check_radiance(source.intensity, origin, "the light's intensity");
-}
-inline void check(const DirectionalSource& source, const Origin& origin) {
-    if (!is_finite(source.direction) || !(glm::length(source.direction) > 0))
-        fail(origin, "the light's direction is not a direction");
-    check_radiance(source.irradiance, origin, "the light's irradiance");
-}
-inline void check(const EnvironmentSource& source, const Origin& origin) {
-    check_radiance(source.radiance, origin, "the environment's radiance");
 }
 
 inline void check(const CameraDescription& camera) {
@@ -78,46 +83,58 @@ inline void check(const CameraDescription& camera) {
         fail(origin, "the aperture radius of " + number_text(camera.aperture_radius) + " is not a length");
     if (!(camera.focus_distance > 0) || !is_finite(camera.focus_distance))
         fail(origin, "the focus distance of " + number_text(camera.focus_distance) + " is not a positive length");
+    if (!(camera.half_width > 0) || !is_finite(camera.half_width))
+        fail(origin, "the camera's half width of " + number_text(camera.half_width) + " is not a positive length");
+    if (!is_finite(camera.principal_point_offset.x) || !is_finite(camera.principal_point_offset.y))
+        fail(origin, "the camera's principal point offset is not a finite number");
     if (!(camera.near_clip >= 0) || !(camera.far_clip > camera.near_clip))
         fail(origin, "near_clip must not be negative, and far_clip must be larger");
+}
+
+inline void check(const FilmDescription& film) {
+    try {
+        Image::check_size(film.width, film.height);
+    } catch (const Error& error) {
+        fail(film.origin, error.what());
+    }
+    const auto [full_width, full_height] = film.full_size();
+    if (film.crop_x < 0 || film.crop_y < 0 || film.crop_x > full_width - film.width ||
+        film.crop_y > full_height - film.height)
+        fail(film.origin, "the crop window is not within the film");
+    if (const std::string problem = film.filter.problem(); !problem.empty()) fail(film.origin, problem);
 }
 
 template <class Material>
 void check(const SceneDescription<Material>& scene) {
     check(scene.camera);
-    try {
-        Image::check_size(scene.film.width, scene.film.height);
-    } catch (const Error& error) {
-        fail(scene.film.origin, error.what());
-    }
-    if (const std::string problem = scene.film.filter.problem(); !problem.empty()) fail(scene.film.origin, problem);
+    check(scene.film);
     for (const auto& material : scene.materials) {
         std::string problem;
-        if constexpr (Bsdf<Material>) problem = material.bsdf.problem();
+        if constexpr (requires { material.bsdf.problem(); }) problem = material.bsdf.problem();
         else problem = std::visit([](const auto& bsdf) -> std::string { return bsdf.problem(); }, material.bsdf);
         if (!problem.empty()) fail(material.origin, problem);
     }
     for (const auto& shape : scene.shapes) {
         if (shape.material >= scene.materials.size()) fail(shape.origin, "the shape's material does not exist");
         std::visit([&](const auto& geometry) { check(geometry, shape.origin); }, shape.geometry);
-        if (shape.emission) check_radiance(*shape.emission, shape.origin, "the light's radiance");
+        if (!shape.emission) continue;
+        if (const std::string problem = radiance_problem(*shape.emission, "the light's radiance"); !problem.empty())
+            fail(shape.origin, problem);
     }
     bool has_environment = false;
     for (const auto& source : scene.sources) {
-        std::visit([&](const auto& s) { check(s, source.origin); }, source.source);
-        if (!std::holds_alternative<EnvironmentSource>(source.source)) continue;
+        if (const std::string problem = source.source.problem(); !problem.empty()) fail(source.origin, problem);
+        if (!source.source.is_environment()) continue;
         if (has_environment)
             fail(source.origin, "the scene has a second environment: give one with the sum of their radiances");
         has_environment = true;
     }
 }
 
-/// What the element after `count` others of its type is known by; throws when there is no number left.
-inline TypedIndex checked_index(std::size_t kind, std::size_t count, const Origin& origin, const std::string& what) {
-    if (count > TypedIndex::max_position)
-        fail(origin,
-             "the scene has more than " + std::to_string(TypedIndex::max_position + 1) + " " + what + " of one kind");
-    return {kind, count};
+/// Throws when no number is left for one more element of a type, after `count` others.
+inline void check_count(std::size_t count, std::size_t max_position, const Origin& origin, const std::string& what) {
+    if (count > max_position)
+        fail(origin, "the scene has more than " + std::to_string(max_position + 1) + " " + what + " of one kind");
 }
 
 /// Corners of the box around all shapes; both at the camera when there are none.
@@ -147,22 +164,37 @@ Bounds find_bounds(const SceneDescription<Material>& scene) {
 }
 
 /// A text by which images of different cameras can be told apart: a hash of all that the camera and film say.
-template <class Camera, class Film>
-std::string camera_id(const Camera& camera, const Film& film) {
-    std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a over the values
-    const auto mix = [&](double value) {
-        auto bits = std::bit_cast<std::uint64_t>(value);
-        for (int byte = 0; byte < 8; ++byte, bits >>= 8) hash = (hash ^ (bits & 0xff)) * 0x100000001b3u;
-    };
+inline std::string camera_id(const CameraDescription& camera, const FilmDescription& film) {
+    NumberHash hash;
     for (int column = 0; column < 4; ++column)
-        for (int row = 0; row < 3; ++row) mix(camera.to_world[column][row] + 0.0);
+        for (int row = 0; row < 3; ++row) hash.mix(camera.to_world[column][row] + 0.0);
     for (const double value : {camera.fov, double(static_cast<int>(camera.fov_axis)), camera.aperture_radius,
                                camera.focus_distance, camera.near_clip, camera.far_clip})
-        mix(value);
-    mix(double(film.width) / film.height);
-    char text[20];
-    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
-    return text;
+        hash.mix(value);
+    hash.mix(double(film.width) / film.height);
+    // Of what most cameras do not have nothing is mixed in: their images of earlier versions keep their camera.
+    if (camera.projection != CameraDescription::Projection::perspective) hash.mix(camera.half_width);
+    if (camera.principal_point_offset != DVec2(0))
+        for (int i = 0; i < 2; ++i) hash.mix(camera.principal_point_offset[i] + 0.0);
+    if (const auto [width, height] = film.full_size(); width != film.width || height != film.height)
+        for (const int value : {film.crop_x, film.crop_y, film.width, width, height}) hash.mix(value);
+    return hash.text();
+}
+
+/// The same for a camera that nothing is known of: by the rays through some places of its film and lens.
+std::string camera_id(const Camera auto& camera) {
+    NumberHash hash;
+    for (const float x : {0.1f, 0.5f, 0.9f})
+        for (const float y : {0.1f, 0.5f, 0.9f}) {
+            const Ray ray = camera.ray(Vec2(x, y) * Vec2(camera.width(), camera.height()), Vec2(y, x));
+            for (int i = 0; i < 3; ++i) {
+                hash.mix(double(ray.origin[i]));
+                hash.mix(double(ray.direction[i]));
+            }
+            hash.mix(double(ray.near));
+            hash.mix(double(ray.far));
+        }
+    return hash.text();
 }
 
 }  // namespace lightswitch::detail

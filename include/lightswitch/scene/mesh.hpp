@@ -16,6 +16,7 @@ struct Mesh {
     std::vector<DVec3> positions;  ///< in scene units
     std::vector<DVec3> normals;    ///< one per position, any length but 0; empty for flat triangles
     std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices into `positions`
+    std::vector<Vec2> uvs{};  ///< texture coordinates by position; those that lack are (0, 0)
 
     /// The mesh under an affine, invertible `matrix`; normals follow the inverse transpose, and a reflection leaves the
     /// front where the transformed normals point (it also swaps the winding, so that front and normals stay together).

@@ -3,72 +3,111 @@
 // The built scene: what rays meet, what surfaces are made of, and what shines. Its type says which surface models and
 // which lights it can hold, so that code is compiled only for what is there.
 
+#include <lightswitch/camera/orthographic_camera.hpp>
+#include <lightswitch/camera/perspective_camera.hpp>
 #include <lightswitch/core/dispatch.hpp>
-#include <lightswitch/core/maybe.hpp>
 #include <lightswitch/embree/accelerator.hpp>
 #include <lightswitch/geometry/surface_point.hpp>
-#include <lightswitch/light/light.hpp>
-#include <lightswitch/scene/camera.hpp>
+#include <lightswitch/scene/check.hpp>
+#include <lightswitch/scene/locate.hpp>
 #include <lightswitch/scene/scene_data.hpp>
 
+#include <memory>
 #include <string>
 #include <tuple>
 #include <vector>
 
 namespace lightswitch {
 
-template <class BsdfList, class LightList>
+/// Every kind of camera that a description can ask for.
+using AllCameras = Cameras<PerspectiveCamera, OrthographicCamera>;
+
+template <class BsdfList, class LightList, class CameraList = AllCameras>
 class Scene;
 
-/// An immutable scene; see `build_scene` for how to make one. All members are safe to call from several threads.
+/// An immutable scene; see `build_scene` for how to make one. All members are safe to call from several threads. Copies
+/// share everything but the camera.
 ///
 /// Positions and distances that it takes and gives are in render space (`RenderSpace`); `length` converts the user's
 /// units.
-template <class... B, class... L>
-class Scene<Bsdfs<B...>, Lights<L...>> {
+template <class... B, class... L, class... C>
+class Scene<Bsdfs<B...>, Lights<L...>, Cameras<C...>> {
 public:
     static_assert(sizeof...(B) <= TypedIndex::kinds, "a scene type holds at most 31 kinds of surface models");
     static_assert(sizeof...(L) <= TypedIndex::kinds, "a scene type holds at most 31 kinds of lights");
 
     using Data = detail::SceneData<Bsdfs<B...>, Lights<L...>>;
+    /// The camera's type: the only one in the list, or an `AnyCamera`.
+    using CameraType = typename detail::CameraOf<Cameras<C...>>::type;
+    /// What rays find: a `SurfacePoint`, and more where a material differs from place to place.
+    using Point = detail::PointOf<B...>;
+    static constexpr bool placed = !std::same_as<Point, SurfacePoint>;
     static constexpr bool has_environment = (EnvironmentLight<L> || ...);
 
-    Scene(Data data, Camera camera, embree::Accelerator accelerator)
-        : data_(std::move(data)), camera_(std::move(camera)), accelerator_(std::move(accelerator)) {}
+    /// Made by `build_scene`. Throws `Error` for a camera that cannot see the scene from where it is.
+    Scene(Data data, embree::Accelerator accelerator, const CameraDescription& camera, const FilmDescription& film)
+        : Scene(std::make_shared<const Contents>(std::move(data), std::move(accelerator)), camera, film) {}
+
+    // --- cameras
+
+    /// The same scene seen by another camera, which gets a `camera_id` of its own. Takes microseconds: the rest is
+    /// shared. Throws `Error` for a camera that is impossible or has no place in the scene's type.
+    Scene with_camera(const CameraDescription& camera, const FilmDescription& film) const {
+        detail::check(camera);
+        detail::check(film);
+        return Scene(contents_, camera, film);
+    }
+    Scene with_camera(const CameraDescription& camera) const { return with_camera(camera, film()); }
+
+    /// The same scene seen by any `Camera` in render space, such as one of one's own. Methods that connect light paths
+    /// to the camera need a `ConnectableCamera`. `id` tells apart its images from those of others; when empty, its rays
+    /// do.
+    template <Camera One>
+    Scene<Bsdfs<B...>, Lights<L...>, Cameras<One>> with_camera(One camera, std::string id = {}) const {
+        FilmDescription own = film();
+        own.width = camera.width();
+        own.height = camera.height();
+        own.crop_x = own.crop_y = own.full_width = own.full_height = 0;
+        if (id.empty()) id = detail::camera_id(camera);
+        return {contents_, std::move(camera), own, std::move(id)};
+    }
 
     // --- rays
 
     /// The closest surface along `ray`, or nothing.
-    [[gnu::always_inline]] Maybe<SurfacePoint> intersect(const Ray& ray) const {
+    [[gnu::always_inline]] Maybe<Point> intersect(const Ray& ray) const {
         // Filled in place: copying a point costs more than finding it on a small mesh.
-        Maybe<SurfacePoint> point;
+        Maybe<Point> point;
         embree::Hit hit;
-        if (accelerator_.intersect(ray, hit)) {
-            if (hit.geometry < data_.meshes.size()) [[likely]]
-                locate_on_triangle(ray, hit, point.emplace());
-            else locate_on_sphere(ray, hit, point.emplace());
+        if (contents_->accelerator.intersect(ray, hit)) {
+            if (hit.geometry < data().meshes.size()) [[likely]]
+                detail::locate_on_triangle(data(), ray, hit, point.emplace());
+            else detail::locate_on_sphere(data(), ray, hit, point.emplace());
+            if constexpr (placed) resolve(hit, *point);
         }
         return point;
     }
 
     /// Whether any surface lies on the ray between `near` and `far`.
-    [[gnu::always_inline]] bool occluded(const Ray& ray) const { return accelerator_.occluded(ray); }
+    [[gnu::always_inline]] bool occluded(const Ray& ray) const { return contents_->accelerator.occluded(ray); }
 
     // --- surfaces
 
     /// Calls `f(bsdf)` with the surface model at `point`, as its concrete type, and returns what it returns.
     template <class F>
-    [[gnu::always_inline]] decltype(auto) with_bsdf(const SurfacePoint& point, F&& f) const {
+    [[gnu::always_inline]] decltype(auto) with_bsdf(const Point& point, F&& f) const {
         return dispatch<sizeof...(B)>(
             point.material.kind(), [&](auto kind) __attribute__((always_inline))->decltype(auto) {
-                return f(std::get<kind>(data_.bsdfs)[point.material.position()]);
+                if constexpr (Bsdf<std::tuple_element_t<kind, std::tuple<B...>>>)
+                    return f(std::get<kind>(data().bsdfs)[point.material.position()]);
+                else return f(detail::model_at<kind>(point));
             });
     }
 
     /// Whether the scene has a material that is a mirror or clear glass: one whose lobes are all Dirac distributions.
     bool has_specular() const {
         return [&]<std::size_t... I>(std::index_sequence<I...>) {
-            return ((B::specular && !std::get<I>(data_.bsdfs).empty()) || ...);
+            return ((model_of<B>::specular && !std::get<I>(data().bsdfs).empty()) || ...);
         }
         (std::index_sequence_for<B...>{});
     }
@@ -95,33 +134,34 @@ public:
     /// A direction towards a light that `choice` in [0, 1) selects (half by power, half evenly among the emitters) and
     /// on which `u` selects a place; the density includes the selection. Black when there is no light.
     [[gnu::always_inline]] LightSample sample_light(const SurfacePoint& from, float choice, const Vec2& u) const {
-        if (data_.light_choice.empty()) return {};
-        const std::size_t number = data_.light_choice.sample(choice);
+        if (data().light_choice.empty()) return {};
+        const std::size_t number = data().light_choice.sample(choice);
         LightSample sample = with_light(
-            locate(number), [&](const auto& light) __attribute__((always_inline)) { return light.sample(from, u); });
-        sample.pdf = sample.pdf * data_.light_choice.probability(number);
+            light_of_number(number), [&](const auto& light)
+                                         __attribute__((always_inline)) { return light.sample(from, u); });
+        sample.pdf = sample.pdf * data().light_choice.probability(number);
         return sample;
     }
 
     /// The density with which `sample_light` at the position `from` chooses the direction `wi` to `hit`, a point on a
     /// light.
     [[gnu::always_inline]] SolidAnglePdf light_pdf(const Vec3& from, const Vec3& wi, const SurfacePoint& hit) const {
-        if (data_.light_choice.empty()) return {};  // there are lights, but all are black
+        if (data().light_choice.empty()) return {};  // there are lights, but all are black
         const SolidAnglePdf pdf = with_light(
             hit.light, [&](const auto& light) __attribute__((always_inline)) {
                 if constexpr (is_area<decltype(light)>) return light.pdf(from, wi, hit);
                 else return SolidAnglePdf{};
             });
-        return pdf * data_.light_choice.probability(light_number(hit.light));
+        return pdf * data().light_choice.probability(light_number(hit.light));
     }
 
     /// The density with which `sample_light`, at a point whose `facing_normal()` is `normal`, chooses the direction
     /// `wi` through the environment.
     SolidAnglePdf environment_pdf(const Vec3& normal, const Vec3& wi) const {
-        if (data_.light_choice.empty()) return {};
+        if (data().light_choice.empty()) return {};
         SolidAnglePdf sum;
         for_each_environment([&](std::size_t number, const auto& light) __attribute__((always_inline)) {
-            sum.value += light.pdf(normal, wi).value * data_.light_choice.probability(number);
+            sum.value += light.pdf(normal, wi).value * data().light_choice.probability(number);
         });
         return sum;
     }
@@ -131,10 +171,10 @@ public:
     [[gnu::always_inline]] LightEmission sample_emission(float choice, const Vec2& place, const Vec2& direction) const {
         static_assert((EmittingLight<L> && ...),
                       "methods that trace light need lights with `emit` and `spread` (EmittingLight)");
-        if (data_.light_choice.empty()) return {};
-        const std::size_t number = data_.light_choice.sample(choice);
-        const float probability = data_.light_choice.probability(number);
-        const TypedIndex light = locate(number);
+        if (data().light_choice.empty()) return {};
+        const std::size_t number = data().light_choice.sample(choice);
+        const float probability = data().light_choice.probability(number);
+        const TypedIndex light = light_of_number(number);
         LightEmission emission = with_light(
             light, [&](const auto& l) __attribute__((always_inline)) { return l.emit(place, direction); });
         emission.weight /= probability;
@@ -145,21 +185,21 @@ public:
 
     /// The density with which `sample_emission` starts a path at `hit`, a point on a light, along `direction`.
     [[gnu::always_inline]] EmissionPdf emission_pdf(const SurfacePoint& hit, const Vec3& direction) const {
-        if (data_.light_choice.empty()) return {};
+        if (data().light_choice.empty()) return {};
         const EmissionPdf pdf = with_light(
             hit.light, [&](const auto& light) __attribute__((always_inline)) {
-                if constexpr (is_area<decltype(light)>) return light.emission_pdf(dot(direction, hit.normal));
+                if constexpr (is_area<decltype(light)>) return light.emission_pdf(hit, direction);
                 else return EmissionPdf{};
             });
-        return pdf * data_.light_choice.probability(light_number(hit.light));
+        return pdf * data().light_choice.probability(light_number(hit.light));
     }
 
-    /// The density with which `sample_emission` starts a path that arrives from beyond the scene in any direction.
-    EmissionPdf environment_emission_pdf() const {
+    /// The density with which `sample_emission` starts a path that comes from beyond the scene out of `direction`.
+    EmissionPdf environment_emission_pdf(const Vec3& direction) const {
         EmissionPdf sum;
-        if (data_.light_choice.empty()) return sum;
+        if (data().light_choice.empty()) return sum;
         for_each_environment([&](std::size_t number, const auto& light) {
-            sum.value += light.emission_pdf().value * data_.light_choice.probability(number);
+            sum.value += light.emission_pdf(direction).value * data().light_choice.probability(number);
         });
         return sum;
     }
@@ -178,72 +218,80 @@ public:
     }
 
     /// Lights are numbered by kind in the order of the list, then by position.
-    std::size_t light_number(TypedIndex light) const { return first_light_[light.kind()] + light.position(); }
-    std::size_t light_count() const { return first_light_[sizeof...(L)]; }
+    std::size_t light_number(TypedIndex light) const { return contents_->first_light[light.kind()] + light.position(); }
+    TypedIndex light_of_number(std::size_t number) const {
+        std::size_t kind = 0;
+        while (number >= contents_->first_light[kind + 1]) ++kind;
+        return {kind, number - contents_->first_light[kind]};
+    }
+    std::size_t light_count() const { return contents_->first_light[sizeof...(L)]; }
 
     /// Calls `f(light)` with that light as its concrete type, and returns what it returns.
     template <class F>
     [[gnu::always_inline]] decltype(auto) with_light(TypedIndex light, F&& f) const {
         return dispatch<sizeof...(L)>(
             light.kind(), [&](auto kind) __attribute__((always_inline))->decltype(auto) {
-                return f(std::get<kind>(data_.lights)[light.position()]);
+                return f(std::get<kind>(data().lights)[light.position()]);
             });
     }
 
     /// The luminous shapes and sources, one entry each.
-    const std::vector<Emitter>& emitters() const { return data_.emitters; }
+    const std::vector<Emitter>& emitters() const { return data().emitters; }
 
     // --- the rest
 
-    const Camera& camera() const { return camera_; }
-    const FilmDescription& film() const { return data_.film; }
-    const std::string& name() const { return data_.name; }
+    const CameraType& camera() const { return camera_; }
+    const FilmDescription& film() const { return film_; }
+    const std::string& name() const { return data().name; }
     /// A short text that differs between different cameras, for telling apart images of one scene.
-    const std::string& camera_id() const { return data_.camera_id; }
+    const std::string& camera_id() const { return camera_id_; }
     /// Scene units to render units.
-    float length(double scene_units) const { return static_cast<float>(data_.space.length(scene_units)); }
-    const RenderSpace& space() const { return data_.space; }
-    const embree::Accelerator& accelerator() const { return accelerator_; }
-    const SceneStatistics& statistics() const { return data_.statistics; }
+    float length(double scene_units) const { return static_cast<float>(space().length(scene_units)); }
+    const RenderSpace& space() const { return data().space; }
+    /// Of a sphere around the origin of render space that holds the scene.
+    double radius() const { return data().radius; }
+    const embree::Accelerator& accelerator() const { return contents_->accelerator; }
+    const SceneStatistics& statistics() const { return data().statistics; }
 
 private:
-    [[gnu::always_inline]] void locate_on_triangle(const Ray& ray, const embree::Hit& hit, SurfacePoint& point) const {
-        const detail::MeshRecord& mesh = data_.meshes[hit.geometry];
-        const Vec3 step = hit.distance * ray.direction;
-        point.position = ray.origin + step;
-        // Twice the area long, at most 12: scaled so that its square neither overflows nor vanishes for the smallest
-        // triangles.
-        point.normal = normalize(hit.normal * 0x1p59f);
-        point.shading_normal = point.normal;
-        // Rounding of the sum above and of the distance, both across the surface, grows with what was added up.
-        const Vec3 n = glm::abs(point.normal);
-        point.offset =
-            mesh.intersection_error + gamma_bound(6) * (dot(n, glm::abs(ray.origin)) + max_component(glm::abs(step)));
-        point.wo = -ray.direction;
-        point.distance = hit.distance;
-        point.material = mesh.material;
-        point.light = mesh.first_light ? mesh.first_light.next(hit.primitive) : TypedIndex();
-        if (mesh.shading_normals != detail::MeshRecord::flat) {
-            const auto& normals = data_.shading_normals[mesh.shading_normals + hit.primitive];
-            const Vec3 sum = (1 - hit.u - hit.v) * normals[0] + hit.u * normals[1] + hit.v * normals[2];
-            const float length2 = length_squared(sum);
-            if (length2 > 0) point.shading_normal = sum * (1 / std::sqrt(length2));
-        }
+    template <class, class, class>
+    friend class Scene;
+
+    using Contents = detail::SceneContents<Bsdfs<B...>, Lights<L...>>;
+    using Shared = std::shared_ptr<const Contents>;
+
+    Scene(Shared contents, const CameraDescription& camera, const FilmDescription& film)
+        : contents_(std::move(contents)),
+          film_(film),
+          camera_(make_camera<C...>(camera)),
+          camera_id_(detail::camera_id(camera, film)) {}
+    Scene(Shared contents, CameraType camera, const FilmDescription& film, std::string id)
+        : contents_(std::move(contents)), film_(film), camera_(std::move(camera)), camera_id_(std::move(id)) {}
+
+    /// The first of the kinds that serves the description.
+    template <class First, class... More>
+    CameraType make_camera(const CameraDescription& description) const {
+        if constexpr (requires { First::serves(description); })
+            if (First::serves(description)) return First(description, film_, space(), data().radius);
+        if constexpr (sizeof...(More) > 0) return make_camera<More...>(description);
+        else
+            fail(description.origin,
+                 "this scene type has no place for that kind of camera; add it to the scene's Cameras<...>");
     }
 
-    [[gnu::always_inline]] void locate_on_sphere(const Ray& ray, const embree::Hit& hit, SurfacePoint& point) const {
-        const detail::SphereRecord& s = data_.spheres[hit.primitive];
-        // Projected back onto the sphere, where the error no longer depends on how far the ray came.
-        const Vec3 outward = normalize(ray.origin + hit.distance * ray.direction - s.center);
-        point.position = s.center + s.radius * outward;
-        point.normal = s.side * outward;
-        point.shading_normal = point.normal;
-        point.offset = s.offset;
-        point.wo = -ray.direction;
-        point.distance = hit.distance;
-        point.material = s.material;
-        point.light = s.light;
+    /// Finds the model of a material that differs from place to place.
+    [[gnu::noinline]] void resolve(const embree::Hit& hit, Point& point) const {
+        dispatch<sizeof...(B)>(point.material.kind(), [&](auto kind) {
+            if constexpr (PlacedMaterial<std::tuple_element_t<kind, std::tuple<B...>>>) {
+                point.uv = hit.geometry < data().meshes.size() ? detail::uv_on_triangle(data(), hit)
+                                                               : detail::uv_on_sphere(data(), hit, point);
+                const auto& material = std::get<kind>(data().bsdfs)[point.material.position()];
+                point.model.template emplace<kind>(material.at(Place{point.uv, point}));
+            }
+        });
     }
+
+    [[gnu::always_inline]] const Data& data() const { return contents_->data; }
 
     template <class T>
     static constexpr bool is_area = AreaLight<std::remove_cvref_t<T>>;
@@ -257,28 +305,15 @@ private:
     template <std::size_t I, class F>
     void visit_environments([[maybe_unused]] F& f) const {
         if constexpr (EnvironmentLight<std::tuple_element_t<I, std::tuple<L...>>>) {
-            const auto& lights = std::get<I>(data_.lights);
-            for (std::size_t i = 0; i < lights.size(); ++i) f(first_light_[I] + i, lights[i]);
+            const auto& lights = std::get<I>(data().lights);
+            for (std::size_t i = 0; i < lights.size(); ++i) f(contents_->first_light[I] + i, lights[i]);
         }
     }
 
-    TypedIndex locate(std::size_t number) const {
-        std::size_t kind = 0;
-        while (number >= first_light_[kind + 1]) ++kind;
-        return {kind, number - first_light_[kind]};
-    }
-
-    std::array<std::size_t, sizeof...(L) + 1> count_lights() const {
-        std::array<std::size_t, sizeof...(L) + 1> first{};
-        [[maybe_unused]] std::size_t kind = 0;
-        ((first[kind + 1] = first[kind] + std::get<std::vector<L>>(data_.lights).size(), ++kind), ...);
-        return first;
-    }
-
-    Data data_;
-    Camera camera_;
-    embree::Accelerator accelerator_;
-    std::array<std::size_t, sizeof...(L) + 1> first_light_ = count_lights();
+    Shared contents_;
+    FilmDescription film_;
+    CameraType camera_;
+    std::string camera_id_;
 };
 
 }  // namespace lightswitch

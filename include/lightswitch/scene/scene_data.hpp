@@ -2,11 +2,12 @@
 
 // What a built scene keeps, by surface model and light.
 
-#include <lightswitch/bsdf/bsdf.hpp>
+#include <lightswitch/bsdf/material.hpp>
 #include <lightswitch/core/dispatch.hpp>
 #include <lightswitch/core/table.hpp>
+#include <lightswitch/embree/accelerator.hpp>
 #include <lightswitch/geometry/render_space.hpp>
-#include <lightswitch/light/light.hpp>
+#include <lightswitch/light/source.hpp>
 #include <lightswitch/scene/description.hpp>
 
 #include <array>
@@ -16,29 +17,13 @@
 
 namespace lightswitch {
 
-/// The surface models of a scene.
+/// The materials of a scene: surface models, or what gives one at every place.
 template <class... B>
-requires(detail::RequireBsdf<B>::value&&...) struct Bsdfs {
+requires(detail::RequireMaterial<B>::value&&...) struct Bsdfs {
 };
 /// The kinds of light of a scene.
 template <Light... L>
 struct Lights {};
-
-/// One luminous shape or source, summed up for methods that treat it as one light.
-struct Emitter {
-    enum class Kind { environment, directional, point, surface };
-
-    Kind kind = Kind::surface;
-    Rgb strength{0};      ///< radiance; of a point its intensity (render space), of a directional source its irradiance
-    Vec3 position{0};     ///< point, or centroid of a surface (render space)
-    Vec3 direction{0};    ///< unit, towards a directional source
-    Vec3 vector_area{0};  ///< of a surface: sum of normal * area (render space)
-    float area = 0;       ///< of a surface
-    std::size_t first_light = 0, light_count = 0;  ///< numbers of the lights that belong to it
-
-    /// Whether no ray can meet it by chance.
-    bool dirac() const { return kind == Kind::directional || kind == Kind::point; }
-};
 
 /// What a scene is made of, in numbers.
 struct SceneStatistics {
@@ -53,9 +38,9 @@ namespace detail {
 /// What a hit on a triangle mesh needs beyond what Embree says. There is one per mesh and nothing per triangle, so that
 /// a hit costs no memory access that is not in a cache already.
 struct MeshRecord {
-    TypedIndex material;
+    MaterialIndex material;
     TypedIndex first_light;         ///< of the mesh's triangles, in their order; empty when it does not shine
-    float intersection_error;       ///< see `SceneAssembly::intersection_error`
+    float intersection_error;       ///< see `intersection_error`
     std::uint32_t shading_normals;  ///< where its triples of normals begin, or `flat`
     static constexpr std::uint32_t flat = 0xffffffffu;
 };
@@ -65,9 +50,14 @@ struct SphereRecord {
     float radius;
     float offset;
     float side;  ///< +1 when the front is outside, -1 when inside
-    TypedIndex material;
+    MaterialIndex material;
     TypedIndex light;
 };
+
+/// The point that rays find in a scene of such materials.
+template <class... M>
+using PointOf = typename std::conditional_t<(PlacedMaterial<M> || ...), std::type_identity<PlacedPoint<M...>>,
+                                            std::type_identity<SurfacePoint>>::type;
 
 template <class B, class L>
 struct SceneData;
@@ -75,17 +65,38 @@ struct SceneData;
 template <class... B, class... L>
 struct SceneData<Bsdfs<B...>, Lights<L...>> {
     std::string name;
-    std::string camera_id;
     RenderSpace space;
-    FilmDescription film;
+    double radius = 1;               ///< of a sphere around the origin of render space that holds the scene
     std::vector<MeshRecord> meshes;  ///< by Embree's geometry number; the spheres come after them
     std::vector<std::array<Vec3, 3>> shading_normals;
     std::vector<SphereRecord> spheres;
+    // Where materials differ from place to place: texture coordinates, per triangle; where those of each mesh begin, or
+    // `flat` for one without; and the axes of the spheres.
+    std::vector<std::array<Vec2, 3>> uvs;
+    std::vector<std::uint32_t> first_uvs;
+    std::vector<Mat3> sphere_axes;
     std::tuple<std::vector<B>...> bsdfs;
     std::tuple<std::vector<L>...> lights;
     DiscreteDistribution light_choice;  ///< over light numbers, see `Scene::light_number`
     std::vector<Emitter> emitters;
     SceneStatistics statistics;
+};
+
+/// What scenes with different cameras share.
+template <class BsdfList, class LightList>
+struct SceneContents;
+
+template <class BsdfList, class... L>
+struct SceneContents<BsdfList, Lights<L...>> {
+    SceneData<BsdfList, Lights<L...>> data;
+    embree::Accelerator accelerator;
+    std::array<std::size_t, sizeof...(L) + 1> first_light{};  ///< number of the first light of each kind
+
+    SceneContents(SceneData<BsdfList, Lights<L...>> d, embree::Accelerator a)
+        : data(std::move(d)), accelerator(std::move(a)) {
+        [[maybe_unused]] std::size_t kind = 0;
+        ((first_light[kind + 1] = first_light[kind] + std::get<std::vector<L>>(data.lights).size(), ++kind), ...);
+    }
 };
 
 }  // namespace detail

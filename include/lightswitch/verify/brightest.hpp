@@ -40,13 +40,20 @@ Rgb brightest_under_dirac_lights(const auto& scene) {
 
 /// The largest radiance per channel that one sample can find by chance on the way: that of the brightest lamp that rays
 /// can meet, or of the brightest place under one that they cannot. Black when the lights cannot tell (`EmittingLight`).
-template <class... B, class... L>
-Rgb brightest_event(const Scene<Bsdfs<B...>, Lights<L...>>& scene) {
+template <class BsdfList, class... L, class CameraList>
+Rgb brightest_event(const Scene<BsdfList, Lights<L...>, CameraList>& scene) {
     Rgb brightest(0);
     bool dirac = false;
     for (const Emitter& emitter : scene.emitters()) {
-        if (emitter.dirac()) dirac = true;
-        else brightest = glm::max(brightest, emitter.strength);
+        if (emitter.dirac()) {
+            dirac = true;
+            continue;
+        }
+        brightest =
+            glm::max(brightest, scene.with_light(scene.light_of_number(emitter.first_light), [&](const auto& light) {
+                if constexpr (requires { light.brightest(); }) return light.brightest();
+                else return emitter.strength;
+            }));
     }
     if constexpr ((EmittingLight<L> && ...))
         if (dirac) brightest = glm::max(brightest, detail::brightest_under_dirac_lights(scene));

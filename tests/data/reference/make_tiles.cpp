@@ -1,19 +1,20 @@
 // Reduces two independent halves of a reference image to the tile data that the tests read; see README.md beside this
 // file.
 //
-//   make_tiles A.pfm B.pfm > NAME.txt       prints a check of the reference's own error to standard error
+//   make_tiles A.pfm B.pfm [TILE] > NAME.txt    for tiles of TILE pixels a side (16); prints a check of the reference's
+//   own
+//                                               error to standard error
 
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace {
-
-constexpr int tile = 16;
 
 struct Pfm {
     int width = 0, height = 0;
@@ -40,7 +41,8 @@ struct Pfm {
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (argc != 3) return std::fprintf(stderr, "usage: make_tiles A.pfm B.pfm > NAME.txt\n"), 2;
+    if (argc != 3 && argc != 4) return std::fprintf(stderr, "usage: make_tiles A.pfm B.pfm [TILE] > NAME.txt\n"), 2;
+    const int tile = argc == 4 ? std::atoi(argv[3]) : 16;
     const Pfm a(argv[1]), b(argv[2]);
     std::printf("%d %d %d\n", a.width / tile, a.height / tile, tile);
     double ratio = 0, count = 0;
@@ -57,7 +59,7 @@ int main(int argc, char** argv) {
                         variance[c] += d * d / 4;
                         difference += d;
                     }
-                const double pixels = tile * tile;
+                const double pixels = double(tile) * tile;
                 mean[c] /= pixels;
                 variance[c] /= pixels * pixels;
                 if (variance[c] > 0) {

@@ -6,7 +6,7 @@ namespace lightswitch::test {
 
 namespace {
 
-using RoundLampScene = Scene<Bsdfs<Lambert, TwoSided<Lambert>>, Lights<SphereLight>>;
+using RoundLampScene = Scene<DiffuseBsdfs, Lights<SphereLight>>;
 
 Estimator relit(const LibraryDescription& description, LightMistake mistake) {
     return estimator(std::make_shared<const Relit<DiffuseScene>>(

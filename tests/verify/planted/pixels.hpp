@@ -20,7 +20,7 @@ enum class PixelMistake {
 /// What `render` makes of a pixel method, without a filter of its own: a box of one pixel.
 template <class SceneType, class M>
 Image planted_pixels(const SceneType& scene, const M& method, PixelMistake mistake, const Estimator::Request& request) {
-    const Camera& camera = scene.camera();
+    const auto& camera = scene.camera();
     const int width = camera.width(), height = camera.height();
     std::vector<DVec3> sums(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), DVec3(0));
     const TbbExecutor executor;

@@ -1,4 +1,4 @@
-#include <lightswitch/scene/camera.hpp>
+#include <lightswitch/camera/perspective_camera.hpp>
 
 #include "../support/chi_square.hpp"
 #include "../support/relative.hpp"
@@ -33,7 +33,7 @@ struct Place {
     Segment ray(const CameraDescription& description, const FilmDescription& film, const Vec2& pixel,
                 const Vec2& lens = {0.5f, 0.5f}) const {
         const RenderSpace space = this->space();
-        const Camera camera(description, film, space, std::sqrt(3.0) * space.length(half));
+        const PerspectiveCamera camera(description, film, space, std::sqrt(3.0) * space.length(half));
         const Ray ray = camera.ray(pixel, lens);
         const DVec3 direction(ray.direction), origin = DVec3(ray.origin) + double(ray.near) * direction;
         return {origin / space.scale() + space.center(), glm::normalize(direction),
@@ -481,7 +481,7 @@ TEST_CASE("camera: rows go down, columns to the right, and pixels are square") {
 TEST_CASE("camera: a scene without shapes has a camera too") {
     CameraDescription camera;
     camera.to_world = CameraDescription::look_at({5, 6, 7}, {5, 6, 6}, {0, 1, 0});
-    const Camera built(camera, film(10, 10), RenderSpace(DVec3(5, 6, 7), DVec3(5, 6, 7)), 0);
+    const PerspectiveCamera built(camera, film(10, 10), RenderSpace(DVec3(5, 6, 7), DVec3(5, 6, 7)), 0);
     const Ray ray = built.ray({5, 5}, {0.5f, 0.5f});
     CHECK(glm::length(ray.direction - Vec3(0, 0, -1)) < 1e-6f);
     CHECK(is_finite(ray.origin));

@@ -1,5 +1,5 @@
 // Methods of one's own beside the library's, chosen by name, and a page that compares them:
-// 07_own_methods [SECONDS [METHOD...]] writes own-methods.html.
+// 09_own_methods [SECONDS [METHOD...]] writes own-methods.html.
 //
 // Both show light that is seen directly or after one reflection, as the library's methods do up to path length 2.
 

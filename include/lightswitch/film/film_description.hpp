@@ -1,0 +1,26 @@
+#pragma once
+
+#include <lightswitch/core/error.hpp>
+#include <lightswitch/film/filter.hpp>
+
+#include <utility>
+
+namespace lightswitch {
+
+/// Size of the image and how samples become pixels.
+struct FilmDescription {
+    int width = 256, height = 256;
+    Filter filter = Filter::box();
+    /// The image may be a part of a larger one, at this distance from its left and top, which has this size; a size of
+    /// 0 is that of the image.
+    int crop_x = 0, crop_y = 0, full_width = 0, full_height = 0;
+    Origin origin;
+
+    /// Width and height of the whole that the image is a part of.
+    std::pair<int, int> full_size() const {
+        return {full_width > 0 ? full_width : width, full_height > 0 ? full_height : height};
+    }
+    double aspect() const { return static_cast<double>(full_size().first) / full_size().second; }
+};
+
+}  // namespace lightswitch
