@@ -10,7 +10,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 compiler=${1:-c++}
 [ $# -le 1 ] || shift
 [ $# -gt 0 ] && [ "$1" != "$compiler" ] && options=("$@") || options=(-O3 -DNDEBUG -DLIGHTSWITCH_HAS_EXR=1)
-limit_kb=400
+limit_kb=250
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
