@@ -50,9 +50,18 @@ struct CameraBody {
         return lens_radius * (double(on_lens.x) * left + double(on_lens.y) * up);
     }
 
-    /// The ray from `origin` along the unit vector `direction`, which goes `per_axis` while it gets 1 further along the
-    /// axis.
-    Ray ray(const DVec3& origin, const DVec3& direction, double per_axis) const {
+    bool has_lens() const { return lens_radius > 0; }
+
+    /// The ray through a place of the lens whose companion through its centre leaves `origin` along `along`, which is 1
+    /// long along the axis.
+    Ray ray(DVec3 origin, DVec3 along, const Vec2& lens) const {
+        if (has_lens()) {
+            const DVec3 shift = lens_shift(lens);
+            origin += shift;
+            along -= shift / focus;
+        }
+        const double per_axis = glm::length(along);
+        const DVec3 direction = along / per_axis;
         double begin = near * per_axis;
         const double end = far * per_axis;
         const double to_center = glm::length(origin);

@@ -17,16 +17,7 @@ public:
         : body_(description, space, radius),
           plane_(body_, body_.position, space.length(description.half_width), description, film) {}
 
-    Ray ray(const Vec2& pixel, const Vec2& lens) const {
-        DVec3 origin = plane_.point(pixel), along = body_.forward;
-        if (has_lens()) {
-            const DVec3 shift = body_.lens_shift(lens);
-            origin += shift;
-            along -= shift / body_.focus;
-        }
-        const double per_axis = glm::length(along);
-        return body_.ray(origin, along / per_axis, per_axis);
-    }
+    Ray ray(const Vec2& pixel, const Vec2& lens) const { return body_.ray(plane_.point(pixel), body_.forward, lens); }
 
     Maybe<CameraView> view(const SurfacePoint& point, const Vec2& lens) const {
         const double depth = glm::dot(DVec3(point.position) - body_.position, body_.forward);
@@ -48,7 +39,7 @@ public:
         return 1 / (plane_.pixel_area * std::abs(glm::dot(DVec3(direction), body_.forward)));
     }
 
-    bool has_lens() const { return body_.lens_radius > 0; }
+    bool has_lens() const { return body_.has_lens(); }
     int width() const { return plane_.width; }
     int height() const { return plane_.height; }
 

@@ -27,7 +27,7 @@ public:
           step_y_(plane_.step_y) {}
 
     Ray ray(const Vec2& pixel, const Vec2& lens) const {
-        if (body_.far_away || has_lens()) return general_ray(pixel, lens);
+        if (body_.far_away || has_lens()) return body_.ray(body_.position, plane_.point(pixel), lens);
         const Vec3 along = corner_ + pixel.x * step_x_ + pixel.y * step_y_;
         const float per_axis = std::sqrt(length_squared(along));
         return {.origin = origin_,
@@ -62,7 +62,7 @@ public:
         return 1 / (plane_.pixel_area * cosine * depth * depth);
     }
 
-    bool has_lens() const { return body_.lens_radius > 0; }
+    bool has_lens() const { return body_.has_lens(); }
     int width() const { return plane_.width; }
     int height() const { return plane_.height; }
 
@@ -75,17 +75,6 @@ private:
         const bool along_x = description.fov_axis == Axis::x || (description.fov_axis == Axis::larger && aspect > 1) ||
                              (description.fov_axis == Axis::smaller && aspect <= 1);
         return along_x ? tangent : tangent * aspect;
-    }
-
-    Ray general_ray(const Vec2& pixel, const Vec2& lens) const {
-        DVec3 along = plane_.point(pixel), origin = body_.position;
-        if (has_lens()) {
-            const DVec3 shift = body_.lens_shift(lens);
-            origin += shift;
-            along -= shift / body_.focus;
-        }
-        const double per_axis = glm::length(along);
-        return body_.ray(origin, along / per_axis, per_axis);
     }
 
     detail::CameraBody body_;

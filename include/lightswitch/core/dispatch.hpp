@@ -24,12 +24,18 @@ template <std::size_t N, std::size_t I = 0, class F>
     }
 }
 
+/// The position of the first true value, or their number.
+template <bool... values>
+constexpr std::size_t first_of() {
+    std::size_t position = 0;
+    static_cast<void>(((values || (++position, false)) || ...));
+    return position;
+}
+
 /// The position of `T` in `List...`, or the length of the list when it is not there.
 template <class T, class... List>
 constexpr std::size_t index_of() {
-    std::size_t index = 0;
-    const bool found = ((std::is_same_v<T, List> || (++index, false)) || ...);
-    return found ? index : sizeof...(List);
+    return first_of<std::is_same_v<T, List>...>();
 }
 
 template <class T, class... List>
@@ -61,23 +67,23 @@ private:
     std::uint32_t bits_ = empty;
 };
 
-/// Which material a surface has, as `TypedIndex`, and whether its back looks like its front.
+/// Which material a surface has, and whether its back looks like its front: a bit of the position.
 class MaterialIndex {
 public:
-    static constexpr std::size_t max_position = (1u << 26) - 1;
+    static constexpr std::size_t max_position = TypedIndex::max_position >> 1;
 
-    constexpr MaterialIndex() = default;
+    constexpr MaterialIndex() : MaterialIndex(0, 0) {}
     /// `kind` at most `TypedIndex::max_kind`, `position` at most `max_position`; unchecked.
     constexpr MaterialIndex(std::size_t kind, std::size_t position, bool two_sided = false)
-        : bits_(static_cast<std::uint32_t>(kind << 27 | position) | (two_sided ? both_sides : 0)) {}
+        : index_(kind, position | (two_sided ? both_sides : 0)) {}
 
-    constexpr std::size_t kind() const { return bits_ >> 27; }
-    constexpr std::size_t position() const { return bits_ & max_position; }
-    constexpr bool two_sided() const { return (bits_ & both_sides) != 0; }
+    constexpr std::size_t kind() const { return index_.kind(); }
+    constexpr std::size_t position() const { return index_.position() & max_position; }
+    constexpr bool two_sided() const { return (index_.position() & both_sides) != 0; }
 
 private:
-    static constexpr std::uint32_t both_sides = 1u << 26;
-    std::uint32_t bits_ = 0;
+    static constexpr std::size_t both_sides = max_position + 1;
+    TypedIndex index_;
 };
 
 }  // namespace lightswitch

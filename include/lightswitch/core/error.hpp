@@ -45,4 +45,14 @@ inline std::string number_text(double x) {
     throw Error(where.prefix() + std::string(what));
 }
 
+/// What `f()` returns; an `Error` that it throws is said to be of that place.
+template <class F>
+decltype(auto) at_place(const Origin& where, F&& f) {
+    try {
+        return f();
+    } catch (const Error& error) {
+        fail(where, error.what());
+    }
+}
+
 }  // namespace lightswitch

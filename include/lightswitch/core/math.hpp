@@ -86,4 +86,13 @@ struct Basis {
     [[gnu::always_inline]] Vec3 to_world(const Vec3& v) const { return v.x * tangent + v.y * bitangent + v.z * normal; }
 };
 
+/// Whether the columns are unit vectors at right angles, to that tolerance of their products: a rotation, perhaps
+/// mirrored.
+inline bool is_orthonormal(const DMat3& m, double tolerance) {
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j <= i; ++j)
+            if (!(std::abs(glm::dot(m[i], m[j]) - (i == j ? 1 : 0)) < tolerance)) return false;
+    return true;
+}
+
 }  // namespace lightswitch

@@ -303,10 +303,7 @@ struct EnvironmentMapSource {
     std::string problem() const {
         if (!map) return "the environment has no map";
         if (!(scale >= 0) || !std::isfinite(scale)) return "the environment's scale is not a number of at least 0";
-        for (int i = 0; i < 3; ++i)
-            for (int j = 0; j <= i; ++j)
-                if (!(std::abs(glm::dot(to_world[i], to_world[j]) - (i == j ? 1 : 0)) < 1e-3))
-                    return "the environment's transform must be a rotation";
+        if (!is_orthonormal(to_world, 1e-3)) return "the environment's transform must be a rotation";
         return detail::radiance_problem(Rgb(DVec3(map->most()) * scale), "the environment's radiance");
     }
     MappedEnvironment light(const RenderSpace&, double radius) const {

@@ -3,6 +3,7 @@
 // What a description says of a light that is no surface, whatever its type.
 
 #include <lightswitch/core/error.hpp>
+#include <lightswitch/core/problem.hpp>
 #include <lightswitch/geometry/render_space.hpp>
 #include <lightswitch/light/light.hpp>
 
@@ -99,13 +100,7 @@ private:
         const std::type_info& light_type() const override { return typeid(Made); }
         bool is_environment() const override { return EnvironmentLight<Made>; }
         void make(const RenderSpace& space, double radius, const Origin& origin, const Take& take) const override {
-            const Made light = [&] {
-                try {
-                    return source.light(space, radius);
-                } catch (const Error& error) {
-                    fail(origin, error.what());
-                }
-            }();
+            const Made light = at_place(origin, [&] { return source.light(space, radius); });
             Emitter emitter{.kind = EnvironmentLight<Made> ? Emitter::Kind::environment : Emitter::Kind::other};
             if constexpr (requires { source.emitter(light); }) emitter = source.emitter(light);
             take(&light, emitter);
@@ -118,27 +113,6 @@ private:
 };
 
 namespace detail {
-
-/// Coordinates beyond this would overflow when they are squared.
-inline constexpr double largest_coordinate = 1e100;
-
-/// What is wrong with a position, direction or amount of light, in words that begin with `what`; or nothing.
-inline std::string position_problem(const DVec3& p, const std::string& what) {
-    if (!is_finite(p)) return what + " is not a finite number";
-    if (glm::any(glm::greaterThan(glm::abs(p), DVec3(largest_coordinate)))) return what + " is beyond 1e100";
-    return {};
-}
-inline std::string direction_problem(const DVec3& d, const std::string& what) {
-    return is_finite(d) && glm::length(d) > 0 ? "" : what + " is not a direction";
-}
-inline std::string radiance_problem(const Rgb& value, const std::string& what) {
-    for (int c = 0; c < 3; ++c) {
-        if (!is_finite(value[c])) return what + " is not a finite number";
-        if (value[c] < 0) return what + " is negative";
-        if (value[c] > 1e30f) return what + " is above 1e30";
-    }
-    return {};
-}
 
 /// A position of a light in render space, or an intensity there. Throws `Error` for what single precision cannot hold.
 inline Vec3 light_position(const DVec3& position, const RenderSpace& space) {

@@ -100,36 +100,28 @@ private:
         const double radius = element.number("radius", 1);
         if (!(radius > 0)) fail(element.origin("radius"), "must be above 0; flip_normals turns a sphere inside out");
         const double scale = std::cbrt(linear_determinant(to_world));
-        for (int i = 0; i < 3; ++i)
-            for (int j = 0; j <= i; ++j) {
-                const double product = glm::dot(DVec3(to_world[i]) / scale, DVec3(to_world[j]) / scale);
-                if (!(std::abs(product - (i == j ? 1 : 0)) < 1e-6))
-                    fail(element.origin("to_world"),
-                         "a sphere must stay one: only the same scale in all directions is allowed");
-            }
+        const DMat3 axes = DMat3(to_world) / scale;
+        if (!is_orthonormal(axes, 1e-6))
+            fail(element.origin("to_world"),
+                 "a sphere must stay one: only the same scale in all directions is allowed");
         // As in Mitsuba 3.9, a reflection turns the sphere inside out.
         return {.center = DVec3(to_world * glm::dvec4(center, 1)),
                 .radius = radius * std::abs(scale),
                 .inward = flip != (scale < 0),
-                .axes = DMat3(to_world) / scale};
+                .axes = axes};
     }
 
     Mesh read_mesh_file(XmlElement& element, const DMat4& to_world, bool flip) {
-        const auto name = element.text("filename");
-        if (!name) element.error("the parameter \"filename\" is missing");
+        const std::filesystem::path file = element.file_name(folder_);
         const bool flat = element.boolean("face_normals", false);
         // Mitsuba's defaults: most OBJ files have the origin of images at the top.
         const bool flip_v = element.boolean("flip_tex_coords", element.type() == "obj");
         const FileNormals use = flat ? FileNormals::ignore : FileNormals::use;
-        const std::filesystem::path file = folder_ / *name;
         scene_.files.push_back(file.string());
-        Mesh mesh;
         Notices notices;
-        try {
-            mesh = element.type() == "obj" ? load_obj(file, use, &notices) : load_ply(file, use, &notices);
-        } catch (const Error& error) {
-            fail(element.origin(), error.what());
-        }
+        Mesh mesh = at_place(element.origin(), [&] {
+            return element.type() == "obj" ? load_obj(file, use, &notices) : load_ply(file, use, &notices);
+        });
         if (notices_ != nullptr)
             for (std::string& notice : notices)
                 if (noticed_.insert(notice).second) notices_->push_back(std::move(notice));
@@ -172,12 +164,10 @@ private:
                                   .irradiance = emission("irradiance")},
                 element.origin());
         } else if (element.type() == "constant") {
-            if (has_environment_) element.error("is the second environment of the scene");
-            has_environment_ = true;
+            only_environment(element);
             scene_.add(EnvironmentSource{.radiance = emission("radiance")}, element.origin());
         } else if (element.type() == "envmap") {
-            if (has_environment_) element.error("is the second environment of the scene");
-            has_environment_ = true;
+            only_environment(element);
             read_environment_map(element, to_world);
         } else if (element.type() == "spot") {
             const double cutoff = element.number("cutoff_angle", 20);
@@ -195,23 +185,23 @@ private:
         element.finish();
     }
 
+    void only_environment(const XmlElement& element) {
+        if (std::exchange(has_environment_, true)) element.error("is the second environment of the scene");
+    }
+
     void read_environment_map(XmlElement& element, const std::optional<DMat4>& to_world) {
-        const auto name = element.text("filename");
-        if (!name) element.error("the parameter \"filename\" is missing");
-        const std::string path = (folder_ / *name).string();
+        const std::filesystem::path path = element.file_name(folder_);
         EnvironmentMapSource source{.map = {}, .scale = element.number("scale", 1)};
-        // Textures keep their own bitmaps: of this one every texel is asked for.
-        try {
+        source.map = at_place(element.origin(), [&] {
             const Bitmap bitmap = load_bitmap(path);
             std::vector<Rgb> texels;
+            texels.reserve(static_cast<std::size_t>(bitmap.width()) * static_cast<std::size_t>(bitmap.height()));
             for (int y = 0; y < bitmap.height(); ++y)
                 for (int x = 0; x < bitmap.width(); ++x) texels.push_back(bitmap.texel(x, y));
-            source.map = std::make_shared<const EnvironmentMap>(std::move(texels), bitmap.width(), bitmap.height());
-        } catch (const Error& error) {
-            fail(element.origin(), error.what());
-        }
+            return std::make_shared<const EnvironmentMap>(std::move(texels), bitmap.width(), bitmap.height());
+        });
         if (to_world) source.to_world = DMat3(*to_world);
-        scene_.files.push_back(path);
+        scene_.files.push_back(path.string());
         scene_.add(std::move(source), element.origin());
     }
 

@@ -130,10 +130,8 @@ inline void read_sensor(const XmlFile& file, pugi::xml_node node, LibraryDescrip
         }
         camera.to_world = *to_world;
         // The same tolerance as in Mitsuba, for matrices written with few digits.
-        for (int i = 0; i < 3; ++i)
-            for (int j = 0; j <= i; ++j)
-                if (std::abs(glm::dot(DVec3((*to_world)[i]), DVec3((*to_world)[j])) - (i == j ? 1 : 0)) > 1e-3)
-                    fail(element.origin("to_world"), "the transform of a camera must not contain a scale or shear");
+        if (!is_orthonormal(DMat3(*to_world), 1e-3))
+            fail(element.origin("to_world"), "the transform of a camera must not contain a scale or shear");
     }
 
     const auto near_clip = element.number("near_clip"), far_clip = element.number("far_clip");

@@ -42,18 +42,12 @@ public:
     LibraryBsdf with_textures(XmlElement& element, const B& bsdf) {
         Textured<B> textured(bsdf);
         bool any = false;
-        std::apply(
-            [&](const auto&... parameter) {
-                (
-                    [&] {
-                        const auto node = element.texture(std::string(parameter.name));
-                        if (!node) return;
-                        textured.set(parameter.name, read(*node));
-                        any = true;
-                    }(),
-                    ...);
-            },
-            parameters_of<B>);
+        Textured<B>::for_each_parameter([&](std::size_t, const auto& parameter) {
+            const auto node = element.texture(std::string(parameter.name));
+            if (!node) return;
+            textured.set(parameter.name, read(*node));
+            any = true;
+        });
         if (!any) return bsdf;
         return textured;
     }
@@ -67,8 +61,7 @@ private:
     }
 
     Texture read_bitmap(XmlElement& element) {
-        const auto name = element.text("filename");
-        if (!name) element.error("the parameter \"filename\" is missing");
+        const std::string path = element.file_name(folder_).string();
         const auto one_of = [&](const char* parameter, const char* otherwise, const auto& values) {
             const std::string value = lower_case(element.text(parameter).value_or(otherwise));
             const auto found = values.find(value);
@@ -86,16 +79,11 @@ private:
         const TextureFilter filter = one_of("filter_type", "bilinear", filters);
         const TextureWrap wrap = one_of("wrap_mode", "repeat", wraps);
         const bool raw = element.boolean("raw", false);
-        const std::string path = (folder_ / *name).string();
         auto& bitmap = bitmaps_[{path, raw, filter, wrap}];
-        if (!bitmap) {
-            try {
-                bitmap =
-                    std::make_shared<const Bitmap>(load_bitmap(path, {.raw = raw, .filter = filter, .wrap = wrap}));
-            } catch (const Error& error) {
-                fail(element.origin(), error.what());
-            }
-        }
+        if (!bitmap)
+            bitmap = at_place(element.origin(), [&] {
+                return std::make_shared<const Bitmap>(load_bitmap(path, {.raw = raw, .filter = filter, .wrap = wrap}));
+            });
         return Texture(bitmap, read_to_uv(element));
     }
 

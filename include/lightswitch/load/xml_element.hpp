@@ -38,6 +38,8 @@ public:
     std::optional<int> integer(const std::string& name, int lowest, int highest = std::numeric_limits<int>::max());
     bool boolean(const std::string& name, bool otherwise);
     std::optional<std::string> text(const std::string& name);
+    /// The file that the parameter "filename" names, which must be there, from that folder.
+    std::filesystem::path file_name(const std::filesystem::path& folder);
     std::optional<DVec3> vector(const std::string& name);
     std::optional<DMat4> transform(const std::string& name);
 
@@ -134,6 +136,12 @@ inline std::optional<std::string> XmlElement::text(const std::string& name) {
     const auto node = find(name, {"string"});
     if (!node) return {};
     return node.attribute("value").value();
+}
+
+inline std::filesystem::path XmlElement::file_name(const std::filesystem::path& folder) {
+    const auto name = text("filename");
+    if (!name) error("the parameter \"filename\" is missing");
+    return folder / *name;
 }
 
 inline std::optional<DVec3> XmlElement::vector(const std::string& name) {

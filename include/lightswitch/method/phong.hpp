@@ -34,7 +34,7 @@ struct Phong {
             if (emitter.kind == Emitter::Kind::environment) continue;
             const Arrival light = arrival(scene, emitter, *hit);
             const float cosine = dot(light.wi, normal);
-            if (!(cosine > 0) || is_black(light.irradiance) || !visible(scene, *hit, emitter, light)) continue;
+            if (!(cosine > 0) || is_black(light.irradiance) || !visible(scene, emitter, light)) continue;
             const Vec3 mirrored = 2 * cosine * normal - light.wi;
             const float highlight = std::pow(std::max(dot(mirrored, wo), 0.0f), terms.shininess);
             sum += light.irradiance * inv_pi *
@@ -46,24 +46,24 @@ struct Phong {
 private:
     struct Arrival {
         Vec3 wi;         // unit, towards the light
-        Vec3 to_light;   // its length is the distance
         Rgb irradiance;  // on a surface that faces the light
+        Ray visibility;  // to the light; of a surface, to its centroid
     };
 
     static Arrival arrival(const auto& scene, const Emitter& emitter, const SurfacePoint& at) {
-        if (emitter.kind == Emitter::Kind::directional) return {emitter.direction, emitter.direction, emitter.strength};
+        if (emitter.kind == Emitter::Kind::directional)
+            return {emitter.direction, emitter.strength, at.spawn(emitter.direction)};
         if (emitter.kind == Emitter::Kind::other) {
             const LightSample light = scene.with_light(scene.light_of_number(emitter.first_light),
                                                        [&](const auto& l) { return l.sample(at, Vec2(0.5f)); });
-            const bool far = light.visibility.far == infinity;
-            return {light.wi, far ? light.wi : light.visibility.direction, light.radiance};
+            return {light.wi, light.radiance, light.visibility};
         }
         const Vec3 to_light = emitter.position - at.position;
         const float distance2 = length_squared(to_light);
-        if (!(distance2 > 0)) return {Vec3(0), Vec3(0), Rgb(0)};
+        if (!(distance2 > 0)) return {Vec3(0), Rgb(0), {}};
         const Vec3 wi = to_light / std::sqrt(distance2);
         const float facing = emitter.kind == Emitter::Kind::point ? 1.0f : projected_area(emitter, wi);
-        return {wi, to_light, emitter.strength * (facing / distance2)};
+        return {wi, emitter.strength * (facing / distance2), at.segment_to(at.position + to_light)};
     }
 
     /// The area of an emitter as seen along `wi`: exact for flat ones, and a quarter of the surface for closed convex
@@ -85,13 +85,10 @@ private:
         }
     }
 
-    static bool visible(const auto& scene, const SurfacePoint& at, const Emitter& emitter, const Arrival& light) {
-        if (emitter.kind == Emitter::Kind::directional || light.to_light == light.wi)
-            return !scene.occluded(at.spawn(light.wi));
-        const Ray segment = at.segment_to(at.position + light.to_light);
-        if (emitter.kind != Emitter::Kind::surface) return !scene.occluded(segment);
+    static bool visible(const auto& scene, const Emitter& emitter, const Arrival& light) {
+        if (emitter.kind != Emitter::Kind::surface) return !scene.occluded(light.visibility);
         // The centroid of a curved light lies inside it: meeting the light itself is no shadow.
-        const auto blocker = scene.intersect(segment);
+        const auto blocker = scene.intersect(light.visibility);
         return !blocker || (blocker->light && belongs(scene.light_number(blocker->light), emitter));
     }
 

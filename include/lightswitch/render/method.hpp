@@ -2,6 +2,7 @@
 
 // What a rendering method is.
 
+#include <lightswitch/camera/camera.hpp>
 #include <lightswitch/core/math.hpp>
 #include <lightswitch/core/sampler.hpp>
 #include <lightswitch/film/filter.hpp>
@@ -33,8 +34,7 @@ constexpr std::string_view name(Kind kind) {
 /// for (surfaces, lights) is between it and the scene: see the members of `Scene`.
 template <class S>
 concept SceneView = requires(const S scene, const Ray ray) {
-    { scene.camera().ray(Vec2(), Vec2()) } -> std::same_as<Ray>;
-    { scene.camera().width() } -> std::convertible_to<int>;
+    requires Camera<std::remove_cvref_t<decltype(scene.camera())>>;
     { scene.film().filter } -> std::convertible_to<Filter>;
     { static_cast<bool>(scene.intersect(ray)) } -> std::same_as<bool>;
     { scene.occluded(ray) } -> std::convertible_to<bool>;

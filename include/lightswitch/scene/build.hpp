@@ -87,13 +87,6 @@ private:
             list.emplace_back(material);
         }
     }
-    /// The position of the first true value, or their number.
-    template <bool... values>
-    static constexpr std::size_t first_of() {
-        std::size_t position = 0;
-        static_cast<void>(((values || (++position, false)) || ...));
-        return position;
-    }
 
     // --- lights
 

@@ -3,35 +3,15 @@
 // What can be wrong with a scene description, said in words.
 
 #include <lightswitch/bsdf/bsdf.hpp>
-#include <lightswitch/camera/camera.hpp>
-#include <lightswitch/core/dispatch.hpp>
+#include <lightswitch/core/problem.hpp>
 #include <lightswitch/film/image.hpp>
 #include <lightswitch/scene/description.hpp>
-
-#include <cstdio>
 
 namespace lightswitch::detail {
 
 inline void check_position(const DVec3& p, const Origin& origin, const std::string& what) {
     if (const std::string problem = position_problem(p, what); !problem.empty()) fail(origin, problem);
 }
-
-/// FNV-1a over numbers.
-class NumberHash {
-public:
-    void mix(double value) {
-        auto bits = std::bit_cast<std::uint64_t>(value);
-        for (int byte = 0; byte < 8; ++byte, bits >>= 8) hash_ = (hash_ ^ (bits & 0xff)) * 0x100000001b3u;
-    }
-    std::string text() const {
-        char text[20];
-        std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash_));
-        return text;
-    }
-
-private:
-    std::uint64_t hash_ = 0xcbf29ce484222325u;
-};
 
 inline void check(const Mesh& mesh, const Origin& origin) {
     if (mesh.triangles.empty()) fail(origin, "the mesh has no triangles");
@@ -60,10 +40,8 @@ inline void check(const Mesh& mesh, const Origin& origin) {
 
 inline void check(const Sphere& sphere, const Origin& origin) {
     check_position(sphere.center, origin, "the sphere's centre");
-    for (int i = 0; i < 3; ++i)
-        for (int j = 0; j <= i; ++j)
-            if (!(std::abs(glm::dot(sphere.axes[i], sphere.axes[j]) - (i == j ? 1 : 0)) < 1e-3))
-                fail(origin, "the sphere's axes must be of unit length and at right angles");
+    if (!is_orthonormal(sphere.axes, 1e-3))
+        fail(origin, "the sphere's axes must be of unit length and at right angles");
     if (!is_finite(sphere.radius) || !(sphere.radius > 0) || sphere.radius > largest_coordinate)
         fail(origin, "the sphere's radius of " + number_text(sphere.radius) + " is not a positive length");
 }
@@ -92,11 +70,7 @@ inline void check(const CameraDescription& camera) {
 }
 
 inline void check(const FilmDescription& film) {
-    try {
-        Image::check_size(film.width, film.height);
-    } catch (const Error& error) {
-        fail(film.origin, error.what());
-    }
+    at_place(film.origin, [&] { Image::check_size(film.width, film.height); });
     const auto [full_width, full_height] = film.full_size();
     if (film.crop_x < 0 || film.crop_y < 0 || film.crop_x > full_width - film.width ||
         film.crop_y > full_height - film.height)
@@ -161,40 +135,6 @@ Bounds find_bounds(const SceneDescription<Material>& scene) {
     }
     if (scene.shapes.empty()) bounds.include(DVec3(scene.camera.to_world[3]));
     return bounds;
-}
-
-/// A text by which images of different cameras can be told apart: a hash of all that the camera and film say.
-inline std::string camera_id(const CameraDescription& camera, const FilmDescription& film) {
-    NumberHash hash;
-    for (int column = 0; column < 4; ++column)
-        for (int row = 0; row < 3; ++row) hash.mix(camera.to_world[column][row] + 0.0);
-    for (const double value : {camera.fov, double(static_cast<int>(camera.fov_axis)), camera.aperture_radius,
-                               camera.focus_distance, camera.near_clip, camera.far_clip})
-        hash.mix(value);
-    hash.mix(double(film.width) / film.height);
-    // Of what most cameras do not have nothing is mixed in: their images of earlier versions keep their camera.
-    if (camera.projection != CameraDescription::Projection::perspective) hash.mix(camera.half_width);
-    if (camera.principal_point_offset != DVec2(0))
-        for (int i = 0; i < 2; ++i) hash.mix(camera.principal_point_offset[i] + 0.0);
-    if (const auto [width, height] = film.full_size(); width != film.width || height != film.height)
-        for (const int value : {film.crop_x, film.crop_y, film.width, width, height}) hash.mix(value);
-    return hash.text();
-}
-
-/// The same for a camera that nothing is known of: by the rays through some places of its film and lens.
-std::string camera_id(const Camera auto& camera) {
-    NumberHash hash;
-    for (const float x : {0.1f, 0.5f, 0.9f})
-        for (const float y : {0.1f, 0.5f, 0.9f}) {
-            const Ray ray = camera.ray(Vec2(x, y) * Vec2(camera.width(), camera.height()), Vec2(y, x));
-            for (int i = 0; i < 3; ++i) {
-                hash.mix(double(ray.origin[i]));
-                hash.mix(double(ray.direction[i]));
-            }
-            hash.mix(double(ray.near));
-            hash.mix(double(ray.far));
-        }
-    return hash.text();
 }
 
 }  // namespace lightswitch::detail

@@ -3,6 +3,7 @@
 // The built scene: what rays meet, what surfaces are made of, and what shines. Its type says which surface models and
 // which lights it can hold, so that code is compiled only for what is there.
 
+#include <lightswitch/camera/camera_id.hpp>
 #include <lightswitch/camera/orthographic_camera.hpp>
 #include <lightswitch/camera/perspective_camera.hpp>
 #include <lightswitch/core/dispatch.hpp>
@@ -64,10 +65,8 @@ public:
     /// do.
     template <Camera One>
     Scene<Bsdfs<B...>, Lights<L...>, Cameras<One>> with_camera(One camera, std::string id = {}) const {
-        FilmDescription own = film();
-        own.width = camera.width();
-        own.height = camera.height();
-        own.crop_x = own.crop_y = own.full_width = own.full_height = 0;
+        const FilmDescription own{
+            .width = camera.width(), .height = camera.height(), .filter = film().filter, .origin = film().origin};
         if (id.empty()) id = detail::camera_id(camera);
         return {contents_, std::move(camera), own, std::move(id)};
     }

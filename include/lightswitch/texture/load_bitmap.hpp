@@ -48,11 +48,8 @@ inline Bitmap load_bitmap(const std::filesystem::path& path, const BitmapOptions
 
     const TextureLookup lookup{options.filter, options.wrap};
     const auto from_image = [&](const Image& image, bool half) {
-        try {
-            return make_bitmap(image, half ? TexelPrecision::half : TexelPrecision::float32, lookup);
-        } catch (const Error& error) {
-            fail(where, error.what());
-        }
+        const TexelPrecision precision = half ? TexelPrecision::half : TexelPrecision::float32;
+        return at_place(where, [&] { return make_bitmap(image, precision, lookup); });
     };
     const std::string_view start(bytes.data(), std::min<std::size_t>(bytes.size(), 4));
     if (start == detail::exr_magic) {

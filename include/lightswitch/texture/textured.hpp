@@ -18,6 +18,12 @@ class Textured {
 public:
     static constexpr std::size_t parameters = std::tuple_size_v<std::remove_cvref_t<decltype(parameters_of<B>)>>;
 
+    /// Calls `f(index, parameter)` for every `Parameter` of the model.
+    static void for_each_parameter(const auto& f) {
+        [&]<std::size_t... I>(std::index_sequence<I...>) { (f(I, std::get<I>(parameters_of<B>)), ...); }
+        (std::make_index_sequence<parameters>());
+    }
+
     /// With the parameters of `constants` where no texture is set.
     Textured(const B& constants = {}) : constants_(constants) {}
 
@@ -49,11 +55,6 @@ public:
     }
 
 private:
-    static void for_each_parameter(const auto& f) {
-        [&]<std::size_t... I>(std::index_sequence<I...>) { (f(I, std::get<I>(parameters_of<B>)), ...); }
-        (std::make_index_sequence<parameters>());
-    }
-
     B with_textures(const auto& value_of) const {
         B result = constants_;
         for_each_parameter([&](std::size_t i, const auto& parameter) {
