@@ -156,8 +156,11 @@ TEST_CASE("rough conductor: extremes") {
 TEST_CASE("rough conductor: impossible parameters are explained") {
     CHECK(metal(1).problem() == "");
     for (const float alpha : {0.0f, -0.1f, 1.1f, infinity, NAN}) CHECK(metal(alpha).problem().find("alpha is") == 0);
-    CHECK(RoughConductor{.k = Rgb(-1)}.problem().find("k has") == 0);
-    CHECK(RoughConductor{.reflectance = Rgb(NAN)}.problem().find("reflectance has") == 0);
+    CHECK(RoughConductor{.k = Rgb(1, 1, -0.5f)}.problem().find("k has a component of -0.5") == 0);
+    CHECK(RoughConductor{.eta = Rgb(1, 1, NAN)}.problem().find("eta has") == 0);
+    CHECK(RoughConductor{.k = Rgb(infinity)}.problem().find("k has") == 0);
+    CHECK(RoughConductor{.eta = Rgb(1, 0, 1), .k = Rgb(1, 0, 1)}.problem().find("both 0") != std::string::npos);
+    CHECK(RoughConductor{.reflectance = Rgb(NAN)}.problem().find("specular_reflectance has") == 0);
 }
 
 TEST_CASE("rough conductor: Phong terms") {

@@ -22,10 +22,7 @@ struct Conductor {
             .wi = {-wo.x, -wo.y, wo.z}, .weight = reflectance * fresnel_conductor(wo.z, eta, k), .specular = true};
     }
 
-    std::string problem() const {
-        const std::string text = conductor_problem(eta, k);
-        return text.empty() ? reflectance_problem("reflectance", reflectance) : text;
-    }
+    std::string problem() const;
 
     /// No diffuse term; a sharp highlight with the colour of the metal at normal incidence.
     PhongTerms phong() const {
@@ -35,7 +32,12 @@ struct Conductor {
 
 template <>
 inline constexpr auto parameters_of<Conductor> =
-    std::tuple{Parameter{"eta", &Conductor::eta}, Parameter{"k", &Conductor::k},
+    std::tuple{Parameter{"eta", &Conductor::eta, metal_index}, Parameter{"k", &Conductor::k, metal_index},
                Parameter{"specular_reflectance", &Conductor::reflectance}};
+
+inline std::string Conductor::problem() const {
+    const std::string text = parameter_problem(*this);
+    return text.empty() ? conductor_problem(eta, k) : text;
+}
 
 }  // namespace lightswitch

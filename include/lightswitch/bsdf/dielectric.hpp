@@ -35,12 +35,7 @@ struct Dielectric {
                           .eta = fresnel.eta};
     }
 
-    std::string problem() const {
-        if (!(eta >= 1e-3f && eta <= 1e3f))
-            return "the relative index of refraction is " + std::to_string(eta) + ", which is outside 0.001 to 1000";
-        const std::string text = reflectance_problem("reflectance", reflectance);
-        return text.empty() ? reflectance_problem("transmittance", transmittance) : text;
-    }
+    std::string problem() const;
 
     /// Phong's model cannot refract: a faint diffuse term keeps the shape visible, and the highlight is shown stronger
     /// than the few percent that glass reflects.
@@ -51,7 +46,10 @@ struct Dielectric {
 
 template <>
 inline constexpr auto parameters_of<Dielectric> =
-    std::tuple{Parameter{"specular_reflectance", &Dielectric::reflectance},
+    std::tuple{Parameter{"eta", &Dielectric::eta, relative_index, false},
+               Parameter{"specular_reflectance", &Dielectric::reflectance},
                Parameter{"specular_transmittance", &Dielectric::transmittance}};
+
+inline std::string Dielectric::problem() const { return parameter_problem(*this); }
 
 }  // namespace lightswitch

@@ -23,11 +23,13 @@ struct Lambert {
         return BsdfSample{.wi = wi, .weight = reflectance, .pdf = cosine_hemisphere_pdf(wi.z)};
     }
 
-    std::string problem() const { return reflectance_problem("reflectance", reflectance); }
+    std::string problem() const;
     PhongTerms phong() const { return {.diffuse = reflectance}; }
 };
 
 template <>
 inline constexpr auto parameters_of<Lambert> = std::tuple{Parameter{"reflectance", &Lambert::reflectance}};
+
+inline std::string Lambert::problem() const { return parameter_problem(*this); }
 
 }  // namespace lightswitch

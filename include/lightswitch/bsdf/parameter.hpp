@@ -1,22 +1,90 @@
 #pragma once
 
+// What the parameters of a surface model are, said once: for scene files, textures, checks and documents.
+
 #include <lightswitch/core/math.hpp>
 
+#include <string>
 #include <string_view>
 #include <tuple>
+#include <type_traits>
 
 namespace lightswitch {
 
-/// A parameter of a surface model: its name in scene files, and where it is kept. `T` is `float` or `Rgb`.
+/// The values that a parameter can have: from `least` to `most`, without `least` itself where it is open.
+struct ParameterRange {
+    float least = 0, most = 1;
+    bool open = false;
+
+    bool contains(float value) const { return (open ? value > least : value >= least) && value <= most; }
+};
+
+/// A fraction of light, and most other things.
+inline constexpr ParameterRange fraction{};
+/// The roughness of microfacets: with none a surface is another model.
+inline constexpr ParameterRange roughness{.least = 0, .most = 1, .open = true};
+/// A part of a complex index of refraction; fourth powers must stay finite.
+inline constexpr ParameterRange metal_index{.least = 0, .most = 1e8f};
+/// The index of refraction behind a surface over that in front of it.
+inline constexpr ParameterRange relative_index{.least = 1e-3f, .most = 1e3f};
+
+/// A parameter of a surface model: its name in scene files, where it is kept, which values it can have, and whether it
+/// may differ from place to place. `T` is `float` or `Rgb`.
 template <class B, class T>
 struct Parameter {
     std::string_view name;
     T B::*member;
+    ParameterRange range = fraction;
+    bool varies = true;
 };
 
-/// The parameters of a surface model that can be textured, as a `std::tuple` of `Parameter`s; each model names its own
-/// beside itself.
+/// The parameters of a surface model, as a `std::tuple` of `Parameter`s; each model names its own beside itself.
 template <class B>
 inline constexpr auto parameters_of = std::tuple{};
+
+/// Calls `f(index, parameter)` for every `Parameter` of the model `B`.
+template <class B>
+void for_each_parameter(const auto& f) {
+    constexpr std::size_t count = std::tuple_size_v<std::remove_cvref_t<decltype(parameters_of<B>)>>;
+    [&]<std::size_t... I>(std::index_sequence<I...>) { (f(I, std::get<I>(parameters_of<B>)), ...); }
+    (std::make_index_sequence<count>());
+}
+
+namespace detail {
+
+inline std::string outside(const ParameterRange& range) {
+    const auto number = [](float value) {
+        std::string text = std::to_string(value);
+        if (value >= 1e6f) return std::string("1e") + std::to_string(std::lround(std::log10(value)));
+        text.erase(text.find_last_not_of('0') + 1);
+        if (text.back() == '.') text.pop_back();
+        return text;
+    };
+    return range.open ? ", which is not above " + number(range.least) + " and at most " + number(range.most)
+                      : ", which is outside " + number(range.least) + " to " + number(range.most);
+}
+
+}  // namespace detail
+
+/// Explains the first parameter whose value is out of its range, or returns an empty string.
+template <class B>
+std::string parameter_problem(const B& model) {
+    std::string problem;
+    for_each_parameter<B>([&](std::size_t, const auto& parameter) {
+        const auto& value = model.*parameter.member;
+        if (!problem.empty()) return;
+        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(value)>, float>) {
+            if (!parameter.range.contains(value))
+                problem =
+                    std::string(parameter.name) + " is " + std::to_string(value) + detail::outside(parameter.range);
+        } else {
+            for (int c = 0; c < 3 && problem.empty(); ++c)
+                if (!parameter.range.contains(value[c]))
+                    problem = std::string(parameter.name) + " has a component of " + std::to_string(value[c]) +
+                              detail::outside(parameter.range);
+        }
+    });
+    return problem;
+}
 
 }  // namespace lightswitch

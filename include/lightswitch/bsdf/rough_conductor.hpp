@@ -47,12 +47,7 @@ struct RoughConductor {
                           .pdf = {0.5f * ggx.distribution(m) / ggx.smith_denominator(wo.z)}};
     }
 
-    std::string problem() const {
-        if (!(alpha > 0 && alpha <= 1))
-            return "alpha is " + std::to_string(alpha) + ", which is not above 0 and at most 1";
-        const std::string text = conductor_problem(eta, k);
-        return text.empty() ? reflectance_problem("reflectance", reflectance) : text;
-    }
+    std::string problem() const;
 
     /// No diffuse term; the highlight of Blinn's exponent for the same roughness, 2 / alpha^2 - 2, kept within 1 to
     /// 1000.
@@ -64,8 +59,13 @@ struct RoughConductor {
 };
 
 template <>
-inline constexpr auto parameters_of<RoughConductor> =
-    std::tuple{Parameter{"alpha", &RoughConductor::alpha}, Parameter{"eta", &RoughConductor::eta},
-               Parameter{"k", &RoughConductor::k}, Parameter{"specular_reflectance", &RoughConductor::reflectance}};
+inline constexpr auto parameters_of<RoughConductor> = std::tuple{
+    Parameter{"alpha", &RoughConductor::alpha, roughness}, Parameter{"eta", &RoughConductor::eta, metal_index},
+    Parameter{"k", &RoughConductor::k, metal_index}, Parameter{"specular_reflectance", &RoughConductor::reflectance}};
+
+inline std::string RoughConductor::problem() const {
+    const std::string text = parameter_problem(*this);
+    return text.empty() ? conductor_problem(eta, k) : text;
+}
 
 }  // namespace lightswitch

@@ -42,7 +42,8 @@ public:
     LibraryBsdf with_textures(XmlElement& element, const B& bsdf) {
         Textured<B> textured(bsdf);
         bool any = false;
-        Textured<B>::for_each_parameter([&](std::size_t, const auto& parameter) {
+        for_each_parameter<B>([&](std::size_t, const auto& parameter) {
+            if (!parameter.varies) return;
             const auto node = element.texture(std::string(parameter.name));
             if (!node) return;
             textured.set(parameter.name, read(*node));

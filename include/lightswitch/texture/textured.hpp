@@ -18,20 +18,14 @@ class Textured {
 public:
     static constexpr std::size_t parameters = std::tuple_size_v<std::remove_cvref_t<decltype(parameters_of<B>)>>;
 
-    /// Calls `f(index, parameter)` for every `Parameter` of the model.
-    static void for_each_parameter(const auto& f) {
-        [&]<std::size_t... I>(std::index_sequence<I...>) { (f(I, std::get<I>(parameters_of<B>)), ...); }
-        (std::make_index_sequence<parameters>());
-    }
-
     /// With the parameters of `constants` where no texture is set.
     Textured(const B& constants = {}) : constants_(constants) {}
 
     /// Sets the texture of the parameter of that name. Throws `Error` when the model has no such parameter.
     Textured& set(std::string_view name, Texture texture) {
         bool found = false;
-        for_each_parameter([&](std::size_t i, const auto& parameter) {
-            if (parameter.name != name) return;
+        for_each_parameter<B>([&](std::size_t i, const auto& parameter) {
+            if (parameter.name != name || !parameter.varies) return;
             textures_[i] = std::make_shared<const Texture>(std::move(texture));
             found = true;
         });
@@ -57,7 +51,7 @@ public:
 private:
     B with_textures(const auto& value_of) const {
         B result = constants_;
-        for_each_parameter([&](std::size_t i, const auto& parameter) {
+        for_each_parameter<B>([&](std::size_t i, const auto& parameter) {
             if (!textures_[i]) return;
             const Rgb value = value_of(*textures_[i]);
             auto& member = result.*parameter.member;
