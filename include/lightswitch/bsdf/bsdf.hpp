@@ -46,8 +46,11 @@ struct PhongTerms {
 /// - `sample(wo, u, transport)`: a direction, or nothing when light is absorbed;
 /// - `problem()`: why the parameters are impossible, in words, or an empty string.
 ///
-/// Optionally `phong()` returns the `PhongTerms` that represent the model, and `static constexpr bool transmits = true`
-/// says that light gets through the surface.
+/// Optionally
+/// - `phong()` returns the `PhongTerms` that represent the model;
+/// - `static constexpr bool transmits = true` says that light gets through the surface;
+/// - `static constexpr bool partly_specular = true` says that some lobes are Dirac distributions, but not all;
+/// - `isotropic()` is false when turning the surface around its normal changes something.
 template <class B>
 concept Bsdf = requires(const B bsdf, const Vec3 direction, const Vec3 u, const Transport transport) {
     { B::specular } -> std::convertible_to<bool>;
@@ -62,6 +65,13 @@ inline constexpr bool transmits = [] {
     if constexpr (requires { B::transmits; }) return B::transmits;
     else return false;
 }();
+
+/// Whether turning the surface around its normal changes nothing. For others scenes find out where u grows.
+template <class B>
+bool is_isotropic(const B& bsdf) {
+    if constexpr (requires { bsdf.isotropic(); }) return bsdf.isotropic();
+    else return true;
+}
 
 namespace detail {
 

@@ -32,7 +32,7 @@ struct Conductor {
 
 template <>
 inline constexpr auto parameters_of<Conductor> =
-    std::tuple{Parameter{"eta", &Conductor::eta, metal_index}, Parameter{"k", &Conductor::k, metal_index},
+    std::tuple{Parameter{"eta", &Conductor::eta, as_metal_index}, Parameter{"k", &Conductor::k, as_metal_index},
                Parameter{"specular_reflectance", &Conductor::reflectance}};
 
 inline std::string Conductor::problem() const {

@@ -46,7 +46,7 @@ struct Dielectric {
 
 template <>
 inline constexpr auto parameters_of<Dielectric> =
-    std::tuple{Parameter{"eta", &Dielectric::eta, relative_index, false},
+    std::tuple{Parameter{"eta", &Dielectric::eta, as_relative_index, false},
                Parameter{"specular_reflectance", &Dielectric::reflectance},
                Parameter{"specular_transmittance", &Dielectric::transmittance}};
 

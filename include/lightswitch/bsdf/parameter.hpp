@@ -20,13 +20,13 @@ struct ParameterRange {
 };
 
 /// A fraction of light, and most other things.
-inline constexpr ParameterRange fraction{};
+inline constexpr ParameterRange as_fraction{};
 /// The roughness of microfacets: with none a surface is another model.
-inline constexpr ParameterRange roughness{.least = 0, .most = 1, .open = true};
+inline constexpr ParameterRange as_roughness{.least = 0, .most = 1, .open = true};
 /// A part of a complex index of refraction; fourth powers must stay finite.
-inline constexpr ParameterRange metal_index{.least = 0, .most = 1e8f};
+inline constexpr ParameterRange as_metal_index{.least = 0, .most = 1e8f};
 /// The index of refraction behind a surface over that in front of it.
-inline constexpr ParameterRange relative_index{.least = 1e-3f, .most = 1e3f};
+inline constexpr ParameterRange as_relative_index{.least = 1e-3f, .most = 1e3f};
 
 /// A parameter of a surface model: its name in scene files, where it is kept, which values it can have, and whether it
 /// may differ from place to place. `T` is `float` or `Rgb`.
@@ -34,7 +34,7 @@ template <class B, class T>
 struct Parameter {
     std::string_view name;
     T B::*member;
-    ParameterRange range = fraction;
+    ParameterRange range = as_fraction;
     bool varies = true;
 };
 

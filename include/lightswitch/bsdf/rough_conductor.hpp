@@ -60,8 +60,9 @@ struct RoughConductor {
 
 template <>
 inline constexpr auto parameters_of<RoughConductor> = std::tuple{
-    Parameter{"alpha", &RoughConductor::alpha, roughness}, Parameter{"eta", &RoughConductor::eta, metal_index},
-    Parameter{"k", &RoughConductor::k, metal_index}, Parameter{"specular_reflectance", &RoughConductor::reflectance}};
+    Parameter{"alpha", &RoughConductor::alpha, as_roughness}, Parameter{"eta", &RoughConductor::eta, as_metal_index},
+    Parameter{"k", &RoughConductor::k, as_metal_index},
+    Parameter{"specular_reflectance", &RoughConductor::reflectance}};
 
 inline std::string RoughConductor::problem() const {
     const std::string text = parameter_problem(*this);

@@ -80,6 +80,15 @@ struct Basis {
         bitangent = Vec3(b, sign + normal.y * normal.y * a, -normal.y);
     }
 
+    /// Whose tangent is `along`, as far as it lies across the normal; any tangent where `along` has no such part.
+    Basis(const Vec3& unit_normal, const Vec3& along) : Basis(unit_normal) {
+        const Vec3 across = along - dot(along, normal) * normal;
+        const float squared = length_squared(across);
+        if (!(squared > 1e-10f * length_squared(along) && squared > 0)) return;
+        tangent = across * (1 / std::sqrt(squared));
+        bitangent = cross(normal, tangent);
+    }
+
     [[gnu::always_inline]] Vec3 to_local(const Vec3& v) const {
         return {dot(v, tangent), dot(v, bitangent), dot(v, normal)};
     }

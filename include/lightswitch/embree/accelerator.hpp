@@ -1,11 +1,9 @@
 #pragma once
 
-// RAII over Embree: a device, and one committed scene of triangles and spheres that rays can be traced through.
+// RAII over Embree: one committed scene of triangles, spheres and other scenes that rays can be traced through.
 
-#include <lightswitch/core/error.hpp>
-#include <lightswitch/core/parallel.hpp>
 #include <lightswitch/core/ray_count.hpp>
-#include <lightswitch/embree/api.hpp>
+#include <lightswitch/embree/device.hpp>
 #include <lightswitch/geometry/ray.hpp>
 
 #if defined(__SSE2__)
@@ -13,73 +11,17 @@
 #endif
 
 #include <array>
-#include <atomic>
 #include <bit>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <memory>
-#include <mutex>
 #include <span>
 #include <string>
 #include <utility>
 
 namespace lightswitch::embree {
-
-/// An Embree device. Errors that Embree reports are kept and thrown as `Error` by `check`, never out of Embree's
-/// callback. Safe to share between threads.
-class Device {
-public:
-    /// `config` is Embree's own string, for example "threads=2,verbose=1,isa=avx2"; empty for the defaults. Throws
-    /// `Error` when Embree cannot read it; keys that Embree does not know it ignores.
-    explicit Device(const std::string& config = "") : state_(std::make_unique<State>()) {
-        lightswitch::detail::allow_threads(tbb::info::default_concurrency());  // Embree builds by oneTBB
-        device_.reset(rtcNewDevice(config.empty() ? nullptr : config.c_str()));
-        if (!device_)
-            throw Error("Embree could not make a device from the configuration \"" + config + "\" (error " +
-                        std::to_string(static_cast<int>(rtcGetDeviceError(nullptr))) + ")");
-        rtcSetDeviceErrorFunction(device_.get(), &State::on_error, state_.get());
-        rtcSetDeviceMemoryMonitorFunction(device_.get(), &State::on_memory, state_.get());
-    }
-
-    RTCDevice get() const { return device_.get(); }
-
-    /// Throws the first error recorded since the last call, saying what was being done.
-    void check(const std::string& doing) const {
-        const std::lock_guard lock(state_->mutex);
-        if (state_->message.empty()) return;
-        const std::string message = std::exchange(state_->message, {});
-        throw Error("Embree, while " + doing + ": " + message);
-    }
-
-    /// Bytes that Embree holds on this device.
-    std::int64_t memory() const { return state_->memory.load(); }
-
-private:
-    struct State {
-        std::mutex mutex;
-        std::string message;
-        std::atomic<std::int64_t> memory{0};
-
-        static void on_error(void* self, RTCError code, const char* text) {
-            auto& state = *static_cast<State*>(self);
-            const std::lock_guard lock(state.mutex);
-            if (state.message.empty())
-                state.message =
-                    (text ? text : "no text") + std::string(" (error ") + std::to_string(static_cast<int>(code)) + ")";
-        }
-        static bool on_memory(void* self, ssize_t bytes, bool) {
-            static_cast<State*>(self)->memory += bytes;
-            return true;
-        }
-    };
-    struct Release {
-        void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-    };
-    std::unique_ptr<State> state_;
-    std::unique_ptr<RTCDeviceTy, Release> device_;
-};
 
 /// What a ray hit, as Embree says it.
 struct Hit {
@@ -88,6 +30,9 @@ struct Hit {
     float u, v;               ///< barycentric weights of a triangle's second and third corner
     float distance;           ///< in multiples of the ray's direction
     Vec3 normal;              ///< of a triangle, on the side from which its corners run counter-clockwise; any length
+    std::uint32_t instance;   ///< what `Accelerator::add_instance` returned, or `no_instance`
+
+    static constexpr std::uint32_t no_instance = RTC_INVALID_GEOMETRY_ID;
 };
 
 /// An Embree scene: geometries are added, then it is committed, and then it is immutable and rays may be traced from
@@ -107,14 +52,16 @@ public:
     static constexpr float largest_coordinate = 1.844e18f;
 
     /// `config` as for `Device`.
-    explicit Accelerator(const std::string& config = "") : device_(config) {
-        scene_.reset(rtcNewScene(device_.get()));
-        device_.check("making a scene");
+    explicit Accelerator(const std::string& config = "") : Accelerator(std::make_shared<const Device>(config)) {}
+    /// On the device of others, which it may contain.
+    explicit Accelerator(std::shared_ptr<const Device> device) : device_(std::move(device)) {
+        scene_.reset(rtcNewScene(device_->get()));
+        device_->check("making a scene");
     }
 
     /// Copies a triangle mesh into Embree's own (padded) buffers; returns its number, counted from 0.
     std::uint32_t add(std::span<const Vec3> positions, std::span<const std::array<std::uint32_t, 3>> triangles) {
-        const Geometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
+        const Geometry geometry(rtcNewGeometry(device_->get(), RTC_GEOMETRY_TYPE_TRIANGLE));
         fill(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, positions);
         fill(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangles);
         return attach(geometry);
@@ -122,9 +69,30 @@ public:
 
     /// The same for spheres.
     std::uint32_t add(std::span<const SphereData> spheres) {
-        const Geometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_SPHERE_POINT));
+        const Geometry geometry(rtcNewGeometry(device_->get(), RTC_GEOMETRY_TYPE_SPHERE_POINT));
         fill(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, spheres);
         return attach(geometry);
+    }
+
+    /// Another accelerator of the same device, already committed, seen under an affine `to_world` (columns; with an
+    /// inverse); returns its number, counted like those of the other geometries. Positions, distances and `Hit::normal`
+    /// of what it holds stay in its own coordinates.
+    std::uint32_t add_instance(const Accelerator& inner, const std::array<Vec3, 4>& to_world) {
+        const Geometry geometry(rtcNewGeometry(device_->get(), RTC_GEOMETRY_TYPE_INSTANCE));
+        rtcSetGeometryInstancedScene(geometry.get(), inner.handle());
+        static_assert(sizeof to_world == 12 * sizeof(float));
+        rtcSetGeometryTransform(geometry.get(), 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, to_world.data());
+        return attach(geometry);
+    }
+
+    /// The corners of the triangle `primitive` of a committed triangle mesh.
+    std::array<Vec3, 3> corners(std::uint32_t geometry, std::uint32_t primitive) const {
+        const RTCGeometry mesh = rtcGetGeometry(scene_.get(), geometry);
+        const auto* positions = static_cast<const Vec3*>(rtcGetGeometryBufferData(mesh, RTC_BUFFER_TYPE_VERTEX, 0));
+        const auto* triangles =
+            static_cast<const std::array<std::uint32_t, 3>*>(rtcGetGeometryBufferData(mesh, RTC_BUFFER_TYPE_INDEX, 0));
+        const auto& [a, b, c] = triangles[primitive];
+        return {positions[a], positions[b], positions[c]};
     }
 
     /// Builds the acceleration structure. `robust` asks Embree for its watertight intersection test.
@@ -132,7 +100,7 @@ public:
         const auto start = std::chrono::steady_clock::now();
         if (robust) rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
         rtcCommitScene(scene_.get());
-        device_.check("building the acceleration structure of " + std::to_string(geometries_) + " shapes");
+        device_->check("building the acceleration structure of " + std::to_string(geometries_) + " shapes");
         build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }
 
@@ -144,8 +112,9 @@ public:
         query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
         ++ray_count.intersect;
         embree::intersect(scene_.get(), query);
-        hit = {query.hit.geomID, query.hit.primID, query.hit.u,
-               query.hit.v,      query.ray.tfar,   Vec3(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z)};
+        hit = {query.hit.geomID,   query.hit.primID, query.hit.u,
+               query.hit.v,        query.ray.tfar,   Vec3(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z),
+               query.hit.instID[0]};
         return hit.geometry != RTC_INVALID_GEOMETRY_ID || missed(query.ray);
     }
 
@@ -160,7 +129,9 @@ public:
 
     RTCScene handle() const { return scene_.get(); }
     double build_seconds() const { return build_seconds_; }
-    std::int64_t memory() const { return device_.memory(); }
+    const std::shared_ptr<const Device>& device() const { return device_; }
+    /// Bytes that Embree holds for this accelerator and the others of its device.
+    std::int64_t memory() const { return device_->memory(); }
 
 private:
     struct ReleaseScene {
@@ -174,7 +145,7 @@ private:
     template <class T>
     void fill(const Geometry& geometry, RTCBufferType type, RTCFormat format, std::span<const T> data) {
         void* const buffer = rtcSetNewGeometryBuffer(geometry.get(), type, 0, format, sizeof(T), data.size());
-        device_.check("allocating a buffer of " + std::to_string(data.size()) + " elements");
+        device_->check("allocating a buffer of " + std::to_string(data.size()) + " elements");
         if (!buffer) throw Error("Embree gave no memory for a buffer of " + std::to_string(data.size()) + " elements");
         std::copy(data.begin(), data.end(), static_cast<T*>(buffer));
     }
@@ -184,7 +155,7 @@ private:
         rtcSetGeometryMask(geometry.get(), 0xffffffffu);
         rtcCommitGeometry(geometry.get());
         rtcAttachGeometryByID(scene_.get(), geometry.get(), geometries_);
-        device_.check("adding a geometry");
+        device_->check("adding a geometry");
         return geometries_++;
     }
 
@@ -247,7 +218,7 @@ private:
 #endif
     }
 
-    Device device_;
+    std::shared_ptr<const Device> device_;
     std::unique_ptr<RTCSceneTy, ReleaseScene> scene_;
     std::uint32_t geometries_ = 0;
     double build_seconds_ = 0;

@@ -30,8 +30,11 @@ struct SurfacePoint {
     /// that the model sees its front.
     [[gnu::always_inline]] Basis shading_frame() const {
         Basis frame(shading_normal);
-        if (material.two_sided()) frame.normal *= std::copysign(1.0f, dot(wo, shading_normal));
+        turn_to_viewer(frame);
         return frame;
+    }
+    [[gnu::always_inline]] void turn_to_viewer(Basis& frame) const {
+        if (material.two_sided()) frame.normal *= std::copysign(1.0f, dot(wo, shading_normal));
     }
 
     /// The position moved off the surface to the side of `direction`.

@@ -99,16 +99,11 @@ private:
         const DVec3 center = element.vector("center").value_or(DVec3(0));
         const double radius = element.number("radius", 1);
         if (!(radius > 0)) fail(element.origin("radius"), "must be above 0; flip_normals turns a sphere inside out");
-        const double scale = std::cbrt(linear_determinant(to_world));
-        const DMat3 axes = DMat3(to_world) / scale;
-        if (!is_orthonormal(axes, 1e-6))
+        const auto sphere = Sphere{.center = center, .radius = radius, .inward = flip}.transformed(to_world);
+        if (!sphere)
             fail(element.origin("to_world"),
                  "a sphere must stay one: only the same scale in all directions is allowed");
-        // As in Mitsuba 3.9, a reflection turns the sphere inside out.
-        return {.center = DVec3(to_world * glm::dvec4(center, 1)),
-                .radius = radius * std::abs(scale),
-                .inward = flip != (scale < 0),
-                .axes = axes};
+        return *sphere;
     }
 
     Mesh read_mesh_file(XmlElement& element, const DMat4& to_world, bool flip) {

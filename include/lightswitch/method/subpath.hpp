@@ -59,7 +59,7 @@ struct Arrival {
     Basis basis;
     Vec3 from;
 
-    [[gnu::always_inline]] explicit Arrival(const SurfacePoint& at)
+    [[gnu::always_inline]] explicit Arrival(const auto& at)
         : basis(at.shading_frame()), from(basis.to_local(at.wo)) {}
 };
 

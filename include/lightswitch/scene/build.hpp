@@ -4,13 +4,14 @@
 
 #include <lightswitch/light/sphere_light.hpp>
 #include <lightswitch/light/triangle_light.hpp>
+#include <lightswitch/scene/build_lights.hpp>
+#include <lightswitch/scene/build_materials.hpp>
 #include <lightswitch/scene/check.hpp>
 #include <lightswitch/scene/description.hpp>
 #include <lightswitch/scene/rounding.hpp>
 #include <lightswitch/scene/scene.hpp>
 
 #include <chrono>
-#include <numeric>
 
 namespace lightswitch {
 
@@ -34,7 +35,8 @@ class SceneAssembly<Bsdfs<B...>, Lights<L...>, CameraList> {
 public:
     using BuiltScene = Scene<Bsdfs<B...>, Lights<L...>, CameraList>;
 
-    explicit SceneAssembly(const BuildOptions& options) : accelerator_(options.embree_config) {
+    explicit SceneAssembly(const BuildOptions& options)
+        : device_(std::make_shared<const embree::Device>(options.embree_config)) {
         data_.statistics.robust = options.robust;
     }
 
@@ -46,45 +48,100 @@ public:
         data_.name = description.name;
         data_.space = RenderSpace(bounds.lower, bounds.upper);
         data_.radius = glm::length(data_.space.point(bounds.upper));
-        for (const auto& material : description.materials) add(material.bsdf, material.two_sided, material.origin);
+        const detail::MaterialAssembly<typename BuiltScene::Data> materials(description, data_);
+        materials_ = materials.indices();
         for (const auto& source : description.sources) add(source.source, source.origin);
-        for (const auto& shape : description.shapes)
-            std::visit([&](const auto& geometry) { add(geometry, shape); }, shape.geometry);
-        finish_lights();
-        if (!spheres_.empty()) accelerator_.add(spheres_);
-        accelerator_.commit(data_.statistics.robust);
+        detail::GroupRecord in_place = begin_group(data_.space, bounds);
+        for (const auto& shape : description.shapes) add(shape);
+        for (const auto& instance : description.instances) add_lights(description.groups[instance.group], instance);
+        detail::choose_lights(data_, pending_);
+        embree::Accelerator accelerator = end_group(in_place);
         auto& statistics = data_.statistics;
+        detail::Placement placement = description.instances.empty()
+                                          ? detail::Placement{std::move(accelerator), {}}
+                                          : place_instances(description, std::move(in_place), std::move(accelerator));
         statistics.spheres = data_.spheres.size();
-        statistics.embree_bytes = accelerator_.memory();
-        statistics.embree_build_seconds = accelerator_.build_seconds();
+        statistics.embree_bytes = device_->memory();
         statistics.scene_bytes = static_cast<std::int64_t>(
             data_.meshes.size() * sizeof(MeshRecord) + data_.spheres.size() * sizeof(SphereRecord) +
             data_.shading_normals.size() * sizeof(data_.shading_normals[0]) + data_.uvs.size() * sizeof(data_.uvs[0]) +
             ((std::get<std::vector<L>>(data_.lights).size() * sizeof(L)) + ... + 0));
         statistics.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        return {std::move(data_), std::move(accelerator_), description.camera, description.film};
+        return {std::move(data_), std::move(placement), description.camera, description.film};
     }
 
 private:
-    // --- materials
+    // --- groups
 
-    template <class... M>
-    void add(const std::variant<M...>& material, bool two_sided, const Origin& origin) {
-        std::visit([&](const auto& bsdf) { add(bsdf, two_sided, origin); }, material);
+    /// Shapes that are added from now on belong to a group in that space.
+    detail::GroupRecord begin_group(const RenderSpace& space, const Bounds& bounds) {
+        space_ = space;
+        radius_ = glm::length(space.point(bounds.upper));
+        spheres_.clear();
+        accelerator_.emplace(device_);
+        return {.first_mesh = static_cast<std::uint32_t>(data_.meshes.size()),
+                .mesh_count = 0,
+                .first_sphere = static_cast<std::uint32_t>(data_.spheres.size()),
+                .space = space,
+                .bounds = bounds,
+                .accelerator = {}};
     }
-    template <Material M>
-    void add(const M& material, bool two_sided, const Origin& origin) {
-        constexpr std::size_t itself = index_of<M, B...>();
-        // Or what can be made of it, such as `Textured<M>`.
-        constexpr std::size_t kind =
-            itself < sizeof...(B) ? itself : first_of<std::is_constructible_v<B, const M&>...>();
-        if constexpr (kind == sizeof...(B)) {
-            fail(origin, "this scene type has no place for that surface model; add it to the scene's Bsdfs<...>");
-        } else {
-            auto& list = std::get<kind>(data_.bsdfs);
-            check_count(list.size(), MaterialIndex::max_position, origin, "surface models");
-            materials_.emplace_back(kind, list.size(), two_sided);
-            list.emplace_back(material);
+    embree::Accelerator end_group(detail::GroupRecord& group) {
+        group.mesh_count = static_cast<std::uint32_t>(data_.meshes.size()) - group.first_mesh;
+        if (!spheres_.empty()) accelerator_->add(spheres_);
+        accelerator_->commit(data_.statistics.robust);
+        data_.statistics.embree_build_seconds += accelerator_->build_seconds();
+        embree::Accelerator result = std::move(*accelerator_);
+        accelerator_.reset();
+        return result;
+    }
+
+    /// The shapes that belong to no group become one, too, so that only instances are placed.
+    detail::Placement place_instances(const auto& description, detail::GroupRecord in_place,
+                                      embree::Accelerator accelerator) {
+        in_place.accelerator = std::make_shared<const embree::Accelerator>(std::move(accelerator));
+        data_.groups.push_back(std::move(in_place));
+        std::vector<detail::InstanceRecord> instances{{.in_place = true}};
+        std::vector<std::size_t> numbers(description.groups.size());  // 0: not built yet
+        for (const auto& instance : description.instances) {
+            const auto& group = description.groups[instance.group];
+            if (numbers[instance.group] == 0) {
+                numbers[instance.group] = data_.groups.size();
+                data_.groups.push_back(build_group(group));
+            }
+            const std::size_t number = numbers[instance.group];
+            instances.push_back(detail::InstanceRecord::make(number, data_.groups[number], data_.space,
+                                                             instance.to_world, instance.origin));
+            instances.back().luminous = std::any_of(group.shapes.begin(), group.shapes.end(),
+                                                    [](const auto& shape) { return shape.emission.has_value(); });
+        }
+        data_.statistics.instances = description.instances.size();
+        return detail::Placement::make(data_.groups, std::move(instances));
+    }
+
+    detail::GroupRecord build_group(const auto& group) {
+        Bounds bounds;
+        for (const auto& shape : group.shapes) bounds.include(shape.geometry);
+        detail::GroupRecord record = begin_group(RenderSpace(bounds.lower, bounds.upper), bounds);
+        for (const auto& shape : group.shapes)
+            if (!shape.emission) add(shape);
+        record.accelerator = std::make_shared<const embree::Accelerator>(end_group(record));
+        return record;
+    }
+
+    /// What shines is a light of its own in each place, and so a shape of its own.
+    void add_lights(const auto& group, const auto& instance) {
+        for (auto shape : group.shapes) {
+            if (!shape.emission) continue;
+            if (auto* mesh = std::get_if<Mesh>(&shape.geometry)) {
+                *mesh = mesh->transformed(instance.to_world);
+            } else {
+                const auto sphere = std::get<Sphere>(shape.geometry).transformed(instance.to_world);
+                if (!sphere)
+                    fail(instance.origin, "a luminous sphere must stay one: only the same scale in all directions");
+                shape.geometry = *sphere;
+            }
+            add(shape);
         }
     }
 
@@ -119,41 +176,17 @@ private:
         source.make(data_.space, data_.radius, origin, take);
     }
 
-    /// Numbers the lights and decides how often each is chosen: half by power, half evenly among the emitters, because
-    /// a dim light may be the one that matters where it is near. Within an emitter its lights are chosen by power.
-    void finish_lights() {
-        std::vector<double> powers;
-        (append_powers(std::get<std::vector<L>>(data_.lights), powers), ...);
-        data_.statistics.lights = powers.size();
-        const double total = std::accumulate(powers.begin(), powers.end(), 0.0);
-        if (!(total > 0)) return;
-        const std::size_t counts[] = {std::get<std::vector<L>>(data_.lights).size()..., 0};
-        std::vector<double> weights(powers.size());
-        for (std::size_t i = 0; i < pending_.size(); ++i) {
-            std::size_t first = pending_[i].light.position();
-            for (std::size_t kind = 0; kind < pending_[i].light.kind(); ++kind) first += counts[kind];
-            Emitter& emitter = data_.emitters[i];
-            emitter.first_light = first;
-            emitter.light_count = pending_[i].count;
-            const auto begin = powers.begin() + std::ptrdiff_t(first);
-            const double power = std::accumulate(begin, begin + std::ptrdiff_t(emitter.light_count), 0.0);
-            for (std::size_t light = first; light < first + emitter.light_count; ++light)
-                if (power > 0) weights[light] = powers[light] * (1 / total + 1 / (power * double(pending_.size())));
-        }
-        data_.light_choice = DiscreteDistribution(weights);
-    }
-    template <class OneLight>
-    static void append_powers(const std::vector<OneLight>& lights, std::vector<double>& powers) {
-        for (const OneLight& light : lights) powers.push_back(light.power());
-    }
-
     // --- shapes
+
+    void add(const auto& shape) {
+        std::visit([&](const auto& geometry) { add(geometry, shape); }, shape.geometry);
+    }
 
     template <class Shape>
     void add(const Mesh& mesh, const Shape& shape) {
         std::vector<Vec3> positions(mesh.positions.size());
         std::transform(mesh.positions.begin(), mesh.positions.end(), positions.begin(),
-                       [&](const DVec3& p) { return Vec3(data_.space.point(p)); });
+                       [&](const DVec3& p) { return Vec3(space_.point(p)); });
         std::vector<std::array<std::uint32_t, 3>> triangles;
         triangles.reserve(mesh.triangles.size());
         MeshRecord record{.material = materials_[shape.material],
@@ -216,15 +249,15 @@ private:
         if (triangles.empty()) return;
         data_.statistics.robust |= needle_area > 0.01 * mesh_area;
         data_.statistics.triangles += triangles.size();
-        accelerator_.add(positions, triangles);
+        accelerator_->add(positions, triangles);
         data_.meshes.push_back(record);
         if (placed) data_.first_uvs.push_back(keep_uvs ? first_uvs : MeshRecord::flat);
     }
 
     template <class Shape>
     void add(const Sphere& sphere, const Shape& shape) {
-        const DVec3 center = data_.space.point(sphere.center);
-        const double radius = data_.space.length(sphere.radius);
+        const DVec3 center = space_.point(sphere.center);
+        const double radius = space_.length(sphere.radius);
         SphereRecord record{.center = Vec3(center),
                             .radius = float(radius),
                             .offset = sphere_offset(center, radius),
@@ -233,7 +266,7 @@ private:
                             .light = {}};
         if (!(record.radius >= smallest_shape))
             fail(shape.origin, "the sphere is too small to be seen beside the rest of the scene");
-        if (!(glm::length(center) + radius <= 1.001 * data_.radius))
+        if (!(glm::length(center) + radius <= 1.001 * radius_))
             fail(shape.origin,
                  "the sphere is so far from the origin that its radius is lost in the rounding of its coordinates");
         if (shape.emission) {
@@ -250,20 +283,19 @@ private:
 
     /// Whether the triangle has an area before its corners become floats.
     bool has_area(const Mesh& mesh, const std::array<std::uint32_t, 3>& corners) const {
-        const auto corner = [&](std::size_t i) { return data_.space.point(mesh.positions[corners[i]]); };
+        const auto corner = [&](std::size_t i) { return space_.point(mesh.positions[corners[i]]); };
         return glm::length(glm::cross(corner(1) - corner(0), corner(2) - corner(0))) > 0;
     }
 
-    struct PendingEmitter {
-        TypedIndex light;
-        std::size_t count;
-    };
-
     typename BuiltScene::Data data_;
+    std::shared_ptr<const embree::Device> device_;
     std::vector<MaterialIndex> materials_;
-    std::vector<PendingEmitter> pending_;
+    std::vector<detail::PendingEmitter> pending_;
     std::vector<embree::Accelerator::SphereData> spheres_;
-    embree::Accelerator accelerator_;
+    // Of the group that shapes are being added to.
+    RenderSpace space_;
+    double radius_ = 0;
+    std::optional<embree::Accelerator> accelerator_;
 };
 
 }  // namespace detail

@@ -78,23 +78,110 @@ inline void check(const FilmDescription& film) {
     if (const std::string problem = film.filter.problem(); !problem.empty()) fail(film.origin, problem);
 }
 
+/// Numbers of the materials that a layer lies over.
+inline std::vector<std::size_t> below(const Layer& layer) {
+    return std::visit(
+        [](const auto& over) -> std::vector<std::size_t> {
+            if constexpr (requires { over.inner; }) return {over.inner};
+            else if constexpr (requires { over.back; }) return {over.front, over.back};
+            else return {over.first, over.second};
+        },
+        layer);
+}
+
+/// `depths[i]` of a material that lies over others becomes the length of the longest chain of layers below it.
 template <class Material>
-void check(const SceneDescription<Material>& scene) {
-    check(scene.camera);
-    check(scene.film);
-    for (const auto& material : scene.materials) {
-        std::string problem;
-        if constexpr (requires { material.bsdf.problem(); }) problem = material.bsdf.problem();
-        else problem = std::visit([](const auto& bsdf) -> std::string { return bsdf.problem(); }, material.bsdf);
-        if (!problem.empty()) fail(material.origin, problem);
+int layer_depth(const SceneDescription<Material>& scene, std::size_t number, std::vector<int>& depths) {
+    constexpr int unknown = -1, under_way = -2, deepest = 64;
+    const auto& material = scene.materials[number];
+    if (!material.layer) return 0;
+    if (depths[number] == under_way) fail(material.origin, "the material contains itself");
+    if (depths[number] != unknown) return depths[number];
+    depths[number] = under_way;
+    int depth = 0;
+    for (const std::size_t inner : below(*material.layer)) {
+        if (inner >= scene.materials.size()) fail(material.origin, "the material inside does not exist");
+        depth = std::max(depth, layer_depth(scene, inner, depths));
     }
-    for (const auto& shape : scene.shapes) {
+    if (depth >= deepest)
+        fail(material.origin, "more than " + std::to_string(deepest) + " materials lie over each other");
+    return depths[number] = depth + 1;
+}
+
+/// Whether a ray can go through the surface because it is masked.
+template <class Material>
+bool is_masked(const SceneDescription<Material>& scene, std::size_t number) {
+    const auto& layer = scene.materials[number].layer;
+    if (!layer) return false;
+    if (std::holds_alternative<Mask>(*layer)) return true;
+    const auto inner = below(*layer);
+    return std::any_of(inner.begin(), inner.end(), [&](std::size_t other) { return is_masked(scene, other); });
+}
+
+inline std::string layer_problem(const Layer& layer) {
+    const auto fraction_problem = [](const std::string& what, const Texture& texture) -> std::string {
+        if (const std::string problem = texture.problem(); !problem.empty()) return problem;
+        if (luminance(texture.least()) >= -1e-4f && luminance(texture.most()) <= 1 + 1e-4f) return {};
+        return what + " has values outside 0 to 1";
+    };
+    if (const auto* blend = std::get_if<Blend>(&layer)) return fraction_problem("the weight", blend->weight);
+    if (const auto* mask = std::get_if<Mask>(&layer)) return fraction_problem("the opacity", mask->opacity);
+    if (const auto* map = std::get_if<NormalMap>(&layer)) return map->normals.problem();
+    if (const auto* bump = std::get_if<BumpMap>(&layer)) {
+        if (!is_finite(bump->scale)) return "the scale of the bump map is not a finite number";
+        return bump->height.problem();
+    }
+    return {};
+}
+
+template <class Material>
+void check_shapes(const SceneDescription<Material>& scene, const auto& shapes) {
+    for (const auto& shape : shapes) {
         if (shape.material >= scene.materials.size()) fail(shape.origin, "the shape's material does not exist");
         std::visit([&](const auto& geometry) { check(geometry, shape.origin); }, shape.geometry);
         if (!shape.emission) continue;
         if (const std::string problem = radiance_problem(*shape.emission, "the light's radiance"); !problem.empty())
             fail(shape.origin, problem);
+        // Light would come from it with that probability when it is met, but always when it is sampled.
+        if (is_masked(scene, shape.material)) fail(shape.origin, "a surface that shines cannot be masked");
     }
+}
+
+template <class Material>
+void check_instances(const SceneDescription<Material>& scene) {
+    for (const auto& group : scene.groups) {
+        if (group.shapes.empty()) fail(group.origin, "the group has no shapes");
+        check_shapes(scene, group.shapes);
+    }
+    for (const auto& instance : scene.instances) {
+        if (instance.group >= scene.groups.size()) fail(instance.origin, "the instance's group does not exist");
+        for (int column = 0; column < 4; ++column)
+            check_position(DVec3(instance.to_world[column]), instance.origin, "the instance's transform");
+        const DMat4& m = instance.to_world;
+        if (m[0].w != 0 || m[1].w != 0 || m[2].w != 0 || m[3].w != 1)
+            fail(instance.origin, "the instance's transform is not affine");
+    }
+}
+
+template <class Material>
+void check(const SceneDescription<Material>& scene) {
+    check(scene.camera);
+    check(scene.film);
+    std::vector<int> depths(scene.materials.size(), -1);
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        const auto& material = scene.materials[i];
+        std::string problem;
+        if (material.layer) {
+            layer_depth(scene, i, depths);
+            if (problem = layer_problem(*material.layer); !problem.empty()) fail(material.origin, problem);
+            continue;
+        }
+        if constexpr (requires { material.bsdf.problem(); }) problem = material.bsdf.problem();
+        else problem = std::visit([](const auto& bsdf) -> std::string { return bsdf.problem(); }, material.bsdf);
+        if (!problem.empty()) fail(material.origin, problem);
+    }
+    check_shapes(scene, scene.shapes);
+    check_instances(scene);
     bool has_environment = false;
     for (const auto& source : scene.sources) {
         if (const std::string problem = source.source.problem(); !problem.empty()) fail(source.origin, problem);
@@ -118,22 +205,35 @@ struct Bounds {
         lower = glm::min(lower, p);
         upper = glm::max(upper, p);
     }
+    void include(const Mesh& mesh) {
+        for (const auto& corners : mesh.triangles)
+            for (const std::uint32_t index : corners) include(mesh.positions[index]);
+    }
+    void include(const Sphere& sphere) {
+        include(sphere.center - sphere.radius);
+        include(sphere.center + sphere.radius);
+    }
+    void include(const std::variant<Mesh, Sphere>& geometry) {
+        std::visit([&](const auto& shape) { include(shape); }, geometry);
+    }
+    /// The box of `other` under that matrix.
+    void include(const Bounds& other, const DMat4& matrix) {
+        for (int corner = 0; corner < 8; ++corner)
+            include(DVec3(matrix * glm::dvec4(corner & 1 ? other.lower.x : other.upper.x,
+                                              corner & 2 ? other.lower.y : other.upper.y,
+                                              corner & 4 ? other.lower.z : other.upper.z, 1)));
+    }
 };
 
 template <class Material>
 Bounds find_bounds(const SceneDescription<Material>& scene) {
     Bounds bounds;
-    for (const auto& shape : scene.shapes) {
-        if (const auto* mesh = std::get_if<Mesh>(&shape.geometry)) {
-            for (const auto& corners : mesh->triangles)
-                for (const std::uint32_t index : corners) bounds.include(mesh->positions[index]);
-        } else {
-            const auto& sphere = std::get<Sphere>(shape.geometry);
-            bounds.include(sphere.center - sphere.radius);
-            bounds.include(sphere.center + sphere.radius);
-        }
-    }
-    if (scene.shapes.empty()) bounds.include(DVec3(scene.camera.to_world[3]));
+    for (const auto& shape : scene.shapes) bounds.include(shape.geometry);
+    std::vector<Bounds> of_groups(scene.groups.size());
+    for (std::size_t i = 0; i < of_groups.size(); ++i)
+        for (const auto& shape : scene.groups[i].shapes) of_groups[i].include(shape.geometry);
+    for (const auto& instance : scene.instances) bounds.include(of_groups[instance.group], instance.to_world);
+    if (scene.shapes.empty() && scene.instances.empty()) bounds.include(DVec3(scene.camera.to_world[3]));
     return bounds;
 }
 

@@ -12,6 +12,7 @@
 #include <lightswitch/light/environment_map.hpp>
 #include <lightswitch/light/point_light.hpp>
 #include <lightswitch/light/spot_light.hpp>
+#include <lightswitch/scene/layer.hpp>
 #include <lightswitch/scene/shapes.hpp>
 
 #include <optional>
@@ -33,7 +34,18 @@ struct SceneDescription {
     struct NamedMaterial {
         Material bsdf;
         Origin origin;
-        bool two_sided = false;  ///< the back looks like the front
+        bool two_sided = false;        ///< the back looks like the front
+        std::optional<Layer> layer{};  ///< stands in the place of `bsdf`
+    };
+    /// Shapes in coordinates of their own, which are seen where instances place them, any number of times.
+    struct Group {
+        std::vector<Shape> shapes;
+        Origin origin;
+    };
+    struct Instance {
+        std::size_t group = 0;  ///< index into `groups`
+        DMat4 to_world{1};      ///< affine, with an inverse
+        Origin origin;
     };
     struct PlacedSource {
         Source source;
@@ -43,6 +55,8 @@ struct SceneDescription {
     std::string name = "scene";
     std::vector<NamedMaterial> materials;
     std::vector<Shape> shapes;
+    std::vector<Group> groups;
+    std::vector<Instance> instances;
     std::vector<PlacedSource> sources;
     CameraDescription camera;
     FilmDescription film;
@@ -58,6 +72,10 @@ struct SceneDescription {
     template <class Bsdf>
     [[gnu::noinline]] std::size_t add(TwoSided<Bsdf> both, Origin origin = {}) {
         materials.emplace_back(std::move(both.inner), std::move(origin), true);
+        return materials.size() - 1;
+    }
+    [[gnu::noinline]] std::size_t add(Layer layer, Origin origin = {}) {
+        materials.emplace_back(Material(), std::move(origin), false, std::move(layer));
         return materials.size() - 1;
     }
     void add(std::variant<Mesh, Sphere> geometry, std::size_t material, std::optional<Rgb> emission = {},

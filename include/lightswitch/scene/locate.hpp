@@ -50,20 +50,47 @@ namespace lightswitch::detail {
     point.light = s.light;
 }
 
-/// The texture coordinates of a hit on a triangle mesh; without any in the description the barycentric weights of the
-/// second and third corner.
-inline Vec2 uv_on_triangle(const auto& data, const embree::Hit& hit) {
-    const std::uint32_t first = data.first_uvs[hit.geometry];
-    if (first == MeshRecord::flat) return {hit.u, hit.v};
-    const auto& corners = data.uvs[first + hit.primitive];
-    return (1 - hit.u - hit.v) * corners[0] + hit.u * corners[1] + hit.v * corners[2];
+/// The same for what an instance has placed: `hit` gets the numbers of the scene's own records.
+[[gnu::noinline]] inline void locate_on_instance(const auto& data, const InstanceRecord& instance, const Ray& ray,
+                                                 embree::Hit& hit, SurfacePoint& point) {
+    const GroupRecord& group = data.groups[instance.group];
+    const bool on_sphere = hit.geometry >= group.mesh_count;
+    hit.geometry = on_sphere ? static_cast<std::uint32_t>(data.meshes.size()) : hit.geometry + group.first_mesh;
+    if (on_sphere) hit.primitive += group.first_sphere;
+    const AffineMap &in = instance.to_group, &out = instance.to_scene;
+    const Ray local = instance.in_place ? ray
+                                        : Ray{.origin = in.point(ray.origin),
+                                              .direction = in.linear * ray.direction,
+                                              .near = ray.near,
+                                              .far = ray.far};
+    if (on_sphere) locate_on_sphere(data, local, hit, point);
+    else locate_on_triangle(data, local, hit, point);
+    if (instance.in_place) return;
+
+    // How far Embree's idea of the ray in the group is from the true one, across the surface: rounding of what is added
+    // up, and of the matrix, which acts on the vector from the group's centre to the point, at most about 1 there.
+    const Vec3 sum = glm::abs(ray.origin) + glm::abs(out.shift) + glm::abs(hit.distance * ray.direction);
+    const float across = point.offset + instance.rounding +
+                         gamma_bound(6) * dot(glm::abs(point.normal), AffineMap::absolute(in.linear) * sum);
+    // A distance along a normal n in the group is 1 / |A n| of it in the scene, where A takes normals there.
+    const Mat3 normals = glm::transpose(in.linear);
+    const Vec3 normal = normals * point.normal;
+    const float stretch = 1 / std::sqrt(length_squared(normal));
+    const Vec3 local_position = point.position;
+    point.position = out.point(local_position);
+    point.normal = normal * stretch;
+    point.shading_normal = normalize(normals * point.shading_normal);
+    point.offset = across * stretch + gamma_bound(6) * dot(glm::abs(point.normal), out.largest(local_position));
+    point.wo = -ray.direction;
 }
 
-/// The same on a sphere: u goes around its z axis, from x over y, v from the top to the bottom.
-inline Vec2 uv_on_sphere(const auto& data, const embree::Hit& hit, const SurfacePoint& point) {
-    const Vec3 local = data.sphere_axes[hit.primitive] * (data.spheres[hit.primitive].side * point.normal);
-    const float around = std::atan2(local.y, local.x) * (0.5f * inv_pi);
-    return {around < 0 ? around + 1 : around, std::acos(std::clamp(local.z, -1.0f, 1.0f)) * inv_pi};
+/// Fills in the point of any hit; in scenes with instances `hit` gets the numbers of the scene's own records.
+[[gnu::always_inline]] inline void locate(const auto& data, const Placement& placement, const Ray& ray,
+                                          embree::Hit& hit, SurfacePoint& point) {
+    if (hit.instance != embree::Hit::no_instance) [[unlikely]]
+        locate_on_instance(data, placement.instances[hit.instance], ray, hit, point);
+    else if (hit.geometry < data.meshes.size()) [[likely]] locate_on_triangle(data, ray, hit, point);
+    else locate_on_sphere(data, ray, hit, point);
 }
 
 }  // namespace lightswitch::detail

@@ -4,13 +4,14 @@
 // which lights it can hold, so that code is compiled only for what is there.
 
 #include <lightswitch/camera/camera_id.hpp>
+#include <lightswitch/camera/make_camera.hpp>
 #include <lightswitch/camera/orthographic_camera.hpp>
 #include <lightswitch/camera/perspective_camera.hpp>
 #include <lightswitch/core/dispatch.hpp>
-#include <lightswitch/embree/accelerator.hpp>
 #include <lightswitch/geometry/surface_point.hpp>
 #include <lightswitch/scene/check.hpp>
 #include <lightswitch/scene/locate.hpp>
+#include <lightswitch/scene/resolve.hpp>
 #include <lightswitch/scene/scene_data.hpp>
 
 #include <memory>
@@ -27,14 +28,15 @@ template <class BsdfList, class LightList, class CameraList = AllCameras>
 class Scene;
 
 /// An immutable scene; see `build_scene` for how to make one. All members are safe to call from several threads. Copies
-/// share everything but the camera.
+/// share everything but the camera; those made by `with_instance` share everything but the camera and the places of
+/// instances.
 ///
 /// Positions and distances that it takes and gives are in render space (`RenderSpace`); `length` converts the user's
 /// units.
 template <class... B, class... L, class... C>
 class Scene<Bsdfs<B...>, Lights<L...>, Cameras<C...>> {
 public:
-    static_assert(sizeof...(B) <= TypedIndex::kinds, "a scene type holds at most 31 kinds of surface models");
+    static_assert(sizeof...(B) < TypedIndex::kinds, "a scene type holds at most 30 kinds of surface models");
     static_assert(sizeof...(L) <= TypedIndex::kinds, "a scene type holds at most 31 kinds of lights");
 
     using Data = detail::SceneData<Bsdfs<B...>, Lights<L...>>;
@@ -46,8 +48,9 @@ public:
     static constexpr bool has_environment = (EnvironmentLight<L> || ...);
 
     /// Made by `build_scene`. Throws `Error` for a camera that cannot see the scene from where it is.
-    Scene(Data data, embree::Accelerator accelerator, const CameraDescription& camera, const FilmDescription& film)
-        : Scene(std::make_shared<const Contents>(std::move(data), std::move(accelerator)), camera, film) {}
+    Scene(Data data, detail::Placement placement, const CameraDescription& camera, const FilmDescription& film)
+        : Scene(std::make_shared<const Contents>(std::move(data)),
+                std::make_shared<const detail::Placement>(std::move(placement)), camera, film) {}
 
     // --- cameras
 
@@ -56,7 +59,7 @@ public:
     Scene with_camera(const CameraDescription& camera, const FilmDescription& film) const {
         detail::check(camera);
         detail::check(film);
-        return Scene(contents_, camera, film);
+        return Scene(contents_, placement_, camera, film);
     }
     Scene with_camera(const CameraDescription& camera) const { return with_camera(camera, film()); }
 
@@ -68,7 +71,22 @@ public:
         const FilmDescription own{
             .width = camera.width(), .height = camera.height(), .filter = film().filter, .origin = film().origin};
         if (id.empty()) id = detail::camera_id(camera);
-        return {contents_, std::move(camera), own, std::move(id)};
+        return {contents_, placement_, std::move(camera), own, std::move(id)};
+    }
+
+    // --- instances
+
+    /// How many there are; their numbers are those of the description.
+    std::size_t instance_count() const { return data().statistics.instances; }
+
+    /// The same scene with one instance in another place. Everything else is shared: only the structure over the
+    /// instances is built again. Throws `Error` when there is no such instance, when its group has lights, or when it
+    /// would leave the sphere of `radius` around the scene, in which lights beyond the scene shine: then build again.
+    Scene with_instance(std::size_t number, const DMat4& to_world) const {
+        Scene result = *this;
+        result.placement_ = std::make_shared<const detail::Placement>(
+            placement_->moved(data().groups, space(), radius(), number, to_world));
+        return result;
     }
 
     // --- rays
@@ -78,17 +96,23 @@ public:
         // Filled in place: copying a point costs more than finding it on a small mesh.
         Maybe<Point> point;
         embree::Hit hit;
-        if (contents_->accelerator.intersect(ray, hit)) {
-            if (hit.geometry < data().meshes.size()) [[likely]]
-                detail::locate_on_triangle(data(), ray, hit, point.emplace());
-            else detail::locate_on_sphere(data(), ray, hit, point.emplace());
-            if constexpr (placed) resolve(hit, *point);
+        if (accelerator().intersect(ray, hit)) {
+            detail::locate(data(), *placement_, ray, hit, point.emplace());
+            if constexpr (placed)
+                if (!detail::resolve(data(), *placement_, hit, *point)) [[unlikely]]
+                    detail::go_on(data(), *placement_, ray, point);
         }
         return point;
     }
 
     /// Whether any surface lies on the ray between `near` and `far`.
-    [[gnu::always_inline]] bool occluded(const Ray& ray) const { return contents_->accelerator.occluded(ray); }
+    [[gnu::always_inline]] bool occluded(const Ray& ray) const {
+        const bool result = accelerator().occluded(ray);
+        if constexpr (placed)
+            if (result && data().masked) [[unlikely]]
+                return static_cast<bool>(intersect(ray));
+        return result;
+    }
 
     // --- surfaces
 
@@ -97,9 +121,8 @@ public:
     [[gnu::always_inline]] decltype(auto) with_bsdf(const Point& point, F&& f) const {
         return dispatch<sizeof...(B)>(
             point.material.kind(), [&](auto kind) __attribute__((always_inline))->decltype(auto) {
-                if constexpr (Bsdf<std::tuple_element_t<kind, std::tuple<B...>>>)
-                    return f(std::get<kind>(data().bsdfs)[point.material.position()]);
-                else return f(detail::model_at<kind>(point));
+                if constexpr (placed) return f(detail::model_at<kind>(point));
+                else return f(std::get<kind>(data().bsdfs)[point.material.position()]);
             });
     }
 
@@ -249,7 +272,8 @@ public:
     const RenderSpace& space() const { return data().space; }
     /// Of a sphere around the origin of render space that holds the scene.
     double radius() const { return data().radius; }
-    const embree::Accelerator& accelerator() const { return contents_->accelerator; }
+    /// Of the instances, where there are any.
+    [[gnu::always_inline]] const embree::Accelerator& accelerator() const { return placement_->accelerator; }
     const SceneStatistics& statistics() const { return data().statistics; }
 
 private:
@@ -258,58 +282,39 @@ private:
 
     using Contents = detail::SceneContents<Bsdfs<B...>, Lights<L...>>;
     using Shared = std::shared_ptr<const Contents>;
+    using SharedPlacement = std::shared_ptr<const detail::Placement>;
 
-    Scene(Shared contents, const CameraDescription& camera, const FilmDescription& film)
+    Scene(Shared contents, SharedPlacement placement, const CameraDescription& camera, const FilmDescription& film)
         : contents_(std::move(contents)),
+          placement_(std::move(placement)),
           film_(film),
-          camera_(make_camera<C...>(camera)),
+          camera_(detail::make_camera<CameraType, C...>(camera, film, space(), radius())),
           camera_id_(detail::camera_id(camera, film)) {}
-    Scene(Shared contents, CameraType camera, const FilmDescription& film, std::string id)
-        : contents_(std::move(contents)), film_(film), camera_(std::move(camera)), camera_id_(std::move(id)) {}
-
-    /// The first of the kinds that serves the description.
-    template <class First, class... More>
-    CameraType make_camera(const CameraDescription& description) const {
-        if constexpr (requires { First::serves(description); })
-            if (First::serves(description)) return First(description, film_, space(), data().radius);
-        if constexpr (sizeof...(More) > 0) return make_camera<More...>(description);
-        else
-            fail(description.origin,
-                 "this scene type has no place for that kind of camera; add it to the scene's Cameras<...>");
-    }
-
-    /// Finds the model of a material that differs from place to place.
-    [[gnu::noinline]] void resolve(const embree::Hit& hit, Point& point) const {
-        dispatch<sizeof...(B)>(point.material.kind(), [&](auto kind) {
-            if constexpr (PlacedMaterial<std::tuple_element_t<kind, std::tuple<B...>>>) {
-                point.uv = hit.geometry < data().meshes.size() ? detail::uv_on_triangle(data(), hit)
-                                                               : detail::uv_on_sphere(data(), hit, point);
-                const auto& material = std::get<kind>(data().bsdfs)[point.material.position()];
-                point.model.template emplace<kind>(material.at(Place{point.uv, point}));
-            }
-        });
-    }
+    Scene(Shared contents, SharedPlacement placement, CameraType camera, const FilmDescription& film, std::string id)
+        : contents_(std::move(contents)),
+          placement_(std::move(placement)),
+          film_(film),
+          camera_(std::move(camera)),
+          camera_id_(std::move(id)) {}
 
     [[gnu::always_inline]] const Data& data() const { return contents_->data; }
 
     template <class T>
     static constexpr bool is_area = AreaLight<std::remove_cvref_t<T>>;
 
-    template <class F>
-    void for_each_environment([[maybe_unused]] F&& f) const {
-        [&]<std::size_t... I>(std::index_sequence<I...>) { (visit_environments<I>(f), ...); }
+    void for_each_environment([[maybe_unused]] auto&& f) const {
+        const auto visit = [&]<std::size_t I>(std::integral_constant<std::size_t, I>) {
+            if constexpr (EnvironmentLight<std::tuple_element_t<I, std::tuple<L...>>>) {
+                const auto& lights = std::get<I>(data().lights);
+                for (std::size_t i = 0; i < lights.size(); ++i) f(contents_->first_light[I] + i, lights[i]);
+            }
+        };
+        [&]<std::size_t... I>(std::index_sequence<I...>) { (visit(std::integral_constant<std::size_t, I>()), ...); }
         (std::index_sequence_for<L...>{});
     }
 
-    template <std::size_t I, class F>
-    void visit_environments([[maybe_unused]] F& f) const {
-        if constexpr (EnvironmentLight<std::tuple_element_t<I, std::tuple<L...>>>) {
-            const auto& lights = std::get<I>(data().lights);
-            for (std::size_t i = 0; i < lights.size(); ++i) f(contents_->first_light[I] + i, lights[i]);
-        }
-    }
-
     Shared contents_;
+    SharedPlacement placement_;
     FilmDescription film_;
     CameraType camera_;
     std::string camera_id_;

@@ -9,6 +9,7 @@
 #include <lightswitch/geometry/render_space.hpp>
 #include <lightswitch/light/source.hpp>
 #include <lightswitch/scene/description.hpp>
+#include <lightswitch/scene/instance.hpp>
 
 #include <array>
 #include <string>
@@ -27,7 +28,8 @@ struct Lights {};
 
 /// What a scene is made of, in numbers.
 struct SceneStatistics {
-    std::size_t triangles = 0, spheres = 0, lights = 0, degenerate_triangles = 0;
+    std::size_t triangles = 0, spheres = 0, lights = 0, degenerate_triangles = 0;  ///< each once, however often placed
+    std::size_t instances = 0;
     std::int64_t embree_bytes = 0, scene_bytes = 0;
     double embree_build_seconds = 0, build_seconds = 0;
     bool robust = false;  ///< whether Embree uses its watertight intersection test
@@ -54,6 +56,16 @@ struct SphereRecord {
     TypedIndex light;
 };
 
+/// A layer as a scene keeps it. Materials of the kind after the last surface model stand for layers, by their position.
+struct LayerRecord {
+    enum class Kind { blend, mask, bump_map, normal_map, both_sides };
+
+    Kind kind;
+    std::array<MaterialIndex, 2> inner;
+    Texture texture{Rgb(0)};
+    float scale = 1;  ///< of a bump map, in render space
+};
+
 /// The point that rays find in a scene of such materials.
 template <class... M>
 using PointOf = typename std::conditional_t<(PlacedMaterial<M> || ...), std::type_identity<PlacedPoint<M...>>,
@@ -66,8 +78,9 @@ template <class... B, class... L>
 struct SceneData<Bsdfs<B...>, Lights<L...>> {
     std::string name;
     RenderSpace space;
-    double radius = 1;               ///< of a sphere around the origin of render space that holds the scene
-    std::vector<MeshRecord> meshes;  ///< by Embree's geometry number; the spheres come after them
+    double radius = 1;                ///< of a sphere around the origin of render space that holds the scene
+    std::vector<MeshRecord> meshes;   ///< by Embree's geometry number; the spheres come after them
+    std::vector<GroupRecord> groups;  ///< where there are instances; the first one are the shapes that belong to none
     std::vector<std::array<Vec3, 3>> shading_normals;
     std::vector<SphereRecord> spheres;
     // Where materials differ from place to place: texture coordinates, per triangle; where those of each mesh begin, or
@@ -75,6 +88,8 @@ struct SceneData<Bsdfs<B...>, Lights<L...>> {
     std::vector<std::array<Vec2, 3>> uvs;
     std::vector<std::uint32_t> first_uvs;
     std::vector<Mat3> sphere_axes;
+    std::vector<LayerRecord> layers;
+    bool masked = false;  ///< whether rays can go through a surface because of a `Mask`
     std::tuple<std::vector<B>...> bsdfs;
     std::tuple<std::vector<L>...> lights;
     DiscreteDistribution light_choice;  ///< over light numbers, see `Scene::light_number`
@@ -82,18 +97,16 @@ struct SceneData<Bsdfs<B...>, Lights<L...>> {
     SceneStatistics statistics;
 };
 
-/// What scenes with different cameras share.
+/// What scenes with different cameras and instances in other places share.
 template <class BsdfList, class LightList>
 struct SceneContents;
 
 template <class BsdfList, class... L>
 struct SceneContents<BsdfList, Lights<L...>> {
     SceneData<BsdfList, Lights<L...>> data;
-    embree::Accelerator accelerator;
     std::array<std::size_t, sizeof...(L) + 1> first_light{};  ///< number of the first light of each kind
 
-    SceneContents(SceneData<BsdfList, Lights<L...>> d, embree::Accelerator a)
-        : data(std::move(d)), accelerator(std::move(a)) {
+    explicit SceneContents(SceneData<BsdfList, Lights<L...>> d) : data(std::move(d)) {
         [[maybe_unused]] std::size_t kind = 0;
         ((first_light[kind + 1] = first_light[kind] + std::get<std::vector<L>>(data.lights).size(), ++kind), ...);
     }

@@ -5,6 +5,7 @@
 #include <lightswitch/scene/mesh.hpp>
 
 #include <numbers>
+#include <optional>
 
 namespace lightswitch {
 
@@ -14,6 +15,10 @@ struct Sphere {
     double radius = 1;  ///< in scene units
     bool inward = false;
     DMat3 axes{1};  ///< orthonormal columns: its own x, y and z axes, for texture coordinates
+
+    /// The sphere under an affine `matrix`; nothing when it would not be one any more. As in Mitsuba 3.9, a reflection
+    /// turns it inside out.
+    std::optional<Sphere> transformed(const DMat4& matrix) const;
 };
 
 // Texture coordinates are those of Mitsuba 3.9's shapes.
@@ -28,6 +33,16 @@ Mesh disk(const DMat4& to_world = DMat4(1));
 /// A flat four-sided polygon with corners counter-clockwise as seen from the front, and texture coordinates from (0, 0)
 /// at the first one to (1, 1) at the third.
 Mesh quad(const DVec3& a, const DVec3& b, const DVec3& c, const DVec3& d);
+
+inline std::optional<Sphere> Sphere::transformed(const DMat4& matrix) const {
+    const double scale = std::cbrt(linear_determinant(matrix));
+    const DMat3 turned = DMat3(matrix) / scale;
+    if (!is_orthonormal(turned, 1e-6)) return {};
+    return Sphere{.center = DVec3(matrix * glm::dvec4(center, 1)),
+                  .radius = radius * std::abs(scale),
+                  .inward = inward != (scale < 0),
+                  .axes = turned * axes};
+}
 
 inline Mesh quad(const DVec3& a, const DVec3& b, const DVec3& c, const DVec3& d) {
     return {.positions = {a, b, c, d},

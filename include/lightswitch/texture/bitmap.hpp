@@ -108,6 +108,19 @@ public:
         });
     }
 
+    /// How fast the luminance grows with u and v, of the bilinear blend, whatever the filter.
+    Vec2 gradient(const Vec2& uv) const {
+        return with_texels([&](const auto* texels) {
+            const Pair x = around(uv.x, width_), y = around(uv.y, height_);
+            const auto value = [&](int column, int row) { return luminance(fetch(texels, column, row)); };
+            const float a = value(x.first, y.first), b = value(x.second, y.first), c = value(x.first, y.second),
+                        d = value(x.second, y.second);
+            const float along_u = (b - a) + y.weight * ((d - c) - (b - a));
+            const float along_v = (c - a) + x.weight * ((d - b) - (c - a));
+            return Vec2(along_u * static_cast<float>(width_), along_v * static_cast<float>(height_));
+        });
+    }
+
     /// Linear RGB of the texel in column `x` (from the left) and row `y` (from the top); unchecked.
     Rgb texel(int x, int y) const {
         return with_texels([&](const auto* texels) { return fetch(texels, x, y); });
@@ -139,7 +152,7 @@ private:
 
     // Not std::visit, which may call through a table of functions: look-ups are made for every vertex of a path.
     template <class F>
-    Rgb with_texels(const F& f) const {
+    std::invoke_result_t<const F&, const float*> with_texels(const F& f) const {
         if (const auto* bytes = std::get_if<0>(&texels_)) return f(bytes->data());
         if (const auto* halves = std::get_if<1>(&texels_)) return f(halves->data());
         return f(std::get_if<2>(&texels_)->data());

@@ -27,6 +27,8 @@ struct UvTransform {
 class Texture {
 public:
     explicit Texture(const Checkerboard& pattern, const UvTransform& to_uv = {}) : pattern_(pattern), to_uv_(to_uv) {}
+    /// The same value everywhere.
+    explicit Texture(const Rgb& value) : pattern_(Checkerboard{value, value}) {}
     /// Throws `Error` when there is no bitmap.
     explicit Texture(std::shared_ptr<const Bitmap> bitmap, const UvTransform& to_uv = {})
         : pattern_(std::move(bitmap)), to_uv_(to_uv) {
@@ -39,6 +41,14 @@ public:
     Rgb operator()(const Vec2& uv) const {
         const Vec2 position = to_uv_(uv);
         return on_pattern([&](const auto& pattern) { return pattern.at(position); });
+    }
+
+    /// How fast the luminance grows with the surface's u and v. 0 everywhere on a checkerboard.
+    Vec2 gradient(const Vec2& uv) const {
+        const auto* bitmap = std::get_if<SharedBitmap>(&pattern_);
+        if (!bitmap) return Vec2(0);
+        const Vec2 slope = (*bitmap)->gradient(to_uv_(uv));
+        return {slope.x * to_uv_.u.x + slope.y * to_uv_.v.x, slope.x * to_uv_.u.y + slope.y * to_uv_.v.y};
     }
 
     /// Mean over the pattern's own unit square, which is the mean over the surface when `to_uv` maps it onto whole

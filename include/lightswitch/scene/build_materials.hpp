@@ -1,0 +1,102 @@
+#pragma once
+
+// From the materials of a description to those of a scene: surface models by kind, and the layers over them.
+
+#include <lightswitch/scene/check.hpp>
+#include <lightswitch/scene/scene_data.hpp>
+
+namespace lightswitch::detail {
+
+template <class Data>
+class MaterialAssembly;
+
+template <class... B, class... L>
+class MaterialAssembly<SceneData<Bsdfs<B...>, Lights<L...>>> {
+public:
+    using Data = SceneData<Bsdfs<B...>, Lights<L...>>;
+
+    /// Puts the materials of a checked description into `data`.
+    template <class M>
+    MaterialAssembly(const SceneDescription<M>& description, Data& data)
+        : data_(data), indices_(description.materials.size(), MaterialIndex(unknown, 0)) {
+        for (std::size_t i = 0; i < indices_.size(); ++i) add_material(description, i);
+    }
+
+    /// By the numbers of the description.
+    const std::vector<MaterialIndex>& indices() const { return indices_; }
+
+private:
+    static constexpr std::size_t layers = sizeof...(B);
+    static constexpr std::size_t unknown = layers + 1;
+    static constexpr bool placed = (PlacedMaterial<B> || ...);
+
+    /// Adds the material of that number, and those that it lies over before it.
+    void add_material(const auto& description, std::size_t number) {
+        if (indices_[number].kind() != unknown) return;
+        const auto& material = description.materials[number];
+        if (material.layer) {
+            add_layer(description, number);
+            return;
+        }
+        const auto add_one = [&](const auto& bsdf) { return add(bsdf, material.two_sided, material.origin); };
+        if constexpr (requires { std::visit(add_one, material.bsdf); })
+            indices_[number] = std::visit(add_one, material.bsdf);
+        else indices_[number] = add_one(material.bsdf);
+    }
+
+    void add_layer(const auto& description, std::size_t number) {
+        const auto& material = description.materials[number];
+        const Layer& layer = *material.layer;
+        if (!placed)
+            fail(material.origin,
+                 "this scene type has no place for layers of materials; put a Textured<...> into the scene's "
+                 "Bsdfs<...>");
+        for (const std::size_t inner : below(layer)) add_material(description, inner);
+        check_count(data_.layers.size(), MaterialIndex::max_position, material.origin, "layers of materials");
+        indices_[number] = MaterialIndex(layers, data_.layers.size(), material.two_sided);
+        data_.layers.push_back(record(layer));
+        data_.masked = data_.masked || std::holds_alternative<Mask>(layer);
+    }
+
+    LayerRecord record(const Layer& layer) const {
+        using Kind = LayerRecord::Kind;
+        if (const auto* blend = std::get_if<Blend>(&layer))
+            return {Kind::blend, {indices_[blend->first], indices_[blend->second]}, blend->weight};
+        if (const auto* mask = std::get_if<Mask>(&layer)) return {Kind::mask, {indices_[mask->inner]}, mask->opacity};
+        if (const auto* map = std::get_if<NormalMap>(&layer))
+            return {Kind::normal_map, {indices_[map->inner]}, map->normals};
+        if (const auto* bump = std::get_if<BumpMap>(&layer))
+            return {Kind::bump_map,
+                    {indices_[bump->inner]},
+                    bump->height,
+                    static_cast<float>(data_.space.length(double(bump->scale)))};
+        const auto& sides = std::get<BothSides>(layer);
+        return {Kind::both_sides, {indices_[sides.front], indices_[sides.back]}};
+    }
+
+    template <Material M>
+    MaterialIndex add(const M& material, bool two_sided, const Origin& origin) {
+        if constexpr (Bsdf<M> && !placed)
+            if (!is_isotropic(material))
+                fail(origin,
+                     "this scene type does not know where u grows on a surface, which that surface model needs; put a "
+                     "Textured<...> into the scene's Bsdfs<...>");
+        constexpr std::size_t itself = index_of<M, B...>();
+        // Or what can be made of it, such as `Textured<M>`.
+        constexpr std::size_t kind =
+            itself < sizeof...(B) ? itself : first_of<std::is_constructible_v<B, const M&>...>();
+        if constexpr (kind == sizeof...(B)) {
+            fail(origin, "this scene type has no place for that surface model; add it to the scene's Bsdfs<...>");
+        } else {
+            auto& list = std::get<kind>(data_.bsdfs);
+            check_count(list.size(), MaterialIndex::max_position, origin, "surface models");
+            list.emplace_back(material);
+            return MaterialIndex(kind, list.size() - 1, two_sided);
+        }
+    }
+
+    Data& data_;
+    std::vector<MaterialIndex> indices_;
+};
+
+}  // namespace lightswitch::detail

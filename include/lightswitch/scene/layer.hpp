@@ -1,0 +1,46 @@
+#pragma once
+
+// What lies over surface models: layers, which name other materials of a description by their numbers. They may be nested
+// in any way, and add no type to a scene: a ray that meets them is led to one surface model.
+
+#include <lightswitch/texture/texture.hpp>
+
+#include <variant>
+
+namespace lightswitch {
+
+/// `weight` (0 to 1, its luminance counts) of `second`, and the rest of `first`. Which of the two a path sees at a vertex
+/// is decided by a number that is drawn from place and direction (as in pbrt-v4, section 10.5.1): noise, but no bias.
+struct Blend {
+    std::size_t first, second;
+    Texture weight;
+};
+
+/// A surface that is there with the probability `opacity` (0 to 1, luminance), and is `inner` then. Where it is not, paths
+/// and shadow rays go straight on, and no bounce is counted. The number that decides is drawn like that of a `Blend`.
+struct Mask {
+    std::size_t inner;
+    Texture opacity;
+};
+
+/// `inner` under the normal of a surface that is raised by `scale * height` (scene units; luminance), after Blinn 1978.
+struct BumpMap {
+    std::size_t inner;
+    Texture height;
+    float scale = 1;
+};
+
+/// `inner` under the normal 2 c - 1 for the colour c, in the frame of dp/du, its right angle and the shading normal.
+struct NormalMap {
+    std::size_t inner;
+    Texture normals;
+};
+
+/// `front` where the surface is seen from its front, and `back`, in a mirrored frame, where from behind.
+struct BothSides {
+    std::size_t front, back;
+};
+
+using Layer = std::variant<Blend, Mask, BumpMap, NormalMap, BothSides>;
+
+}  // namespace lightswitch

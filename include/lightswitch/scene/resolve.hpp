@@ -1,0 +1,213 @@
+#pragma once
+
+// From a material that differs from place to place to the surface model at a point: texture coordinates, layers.
+
+#include <lightswitch/core/sampler.hpp>
+#include <lightswitch/scene/locate.hpp>
+
+#include <bit>
+
+namespace lightswitch::detail {
+
+/// The texture coordinates of a hit on a triangle mesh; without any in the description the barycentric weights of the
+/// second and third corner.
+inline Vec2 uv_on_triangle(const auto& data, const embree::Hit& hit) {
+    const std::uint32_t first = data.first_uvs[hit.geometry];
+    if (first == MeshRecord::flat) return {hit.u, hit.v};
+    const auto& corners = data.uvs[first + hit.primitive];
+    return (1 - hit.u - hit.v) * corners[0] + hit.u * corners[1] + hit.v * corners[2];
+}
+
+/// A direction from the centre of a sphere to a point on it, in the sphere's own axes.
+inline Vec3 on_unit_sphere(const auto& data, std::uint32_t sphere, const Vec3& normal) {
+    return data.sphere_axes[sphere] * (data.spheres[sphere].side * normal);
+}
+
+/// The same on a sphere: u goes around its z axis, from x over y, v from the top to the bottom.
+inline Vec2 uv_on_sphere(const Vec3& local) {
+    const float around = std::atan2(local.y, local.x) * (0.5f * inv_pi);
+    return {around < 0 ? around + 1 : around, std::acos(std::clamp(local.z, -1.0f, 1.0f)) * inv_pi};
+}
+
+/// How the position grows with u and with v; 0 where texture coordinates say nothing of it.
+struct Tangents {
+    Vec3 u{0}, v{0};
+};
+
+/// `corners` are those of the triangle that was hit.
+inline Tangents tangents_on_triangle(const auto& data, const embree::Hit& hit, const std::array<Vec3, 3>& corners) {
+    const std::uint32_t first = data.first_uvs[hit.geometry];
+    if (first == MeshRecord::flat) return {};
+    const auto& uv = data.uvs[first + hit.primitive];
+    const Vec2 d1 = uv[1] - uv[0], d2 = uv[2] - uv[0];
+    const float determinant = d1.x * d2.y - d1.y * d2.x;
+    if (determinant == 0) return {};
+    const Vec3 edge1 = corners[1] - corners[0], edge2 = corners[2] - corners[0];
+    const float inverse = 1 / determinant;
+    const Tangents result{(d2.y * edge1 - d1.y * edge2) * inverse, (d1.x * edge2 - d2.x * edge1) * inverse};
+    return is_finite(result.u) && is_finite(result.v) ? result : Tangents{};
+}
+
+inline Tangents tangents_on_sphere(const auto& data, std::uint32_t sphere, const Vec3& local) {
+    const Mat3 to_world = glm::transpose(data.sphere_axes[sphere]);
+    const float radius = data.spheres[sphere].radius;
+    const float sine = std::sqrt(local.x * local.x + local.y * local.y);
+    const Vec2 around = sine > 0 ? Vec2(local.x, local.y) / sine : Vec2(1, 0);
+    return {2 * pi * radius * (to_world * Vec3(-local.y, local.x, 0)),
+            pi * radius * (to_world * Vec3(local.z * around.x, local.z * around.y, -sine))};
+}
+
+/// Numbers in [0, 1) by which layers decide, drawn from where a ray meets the surface: so every method, and a shadow ray
+/// too, decides for a path with the same probability.
+class LayerChoices {
+public:
+    explicit LayerChoices(const SurfacePoint& point) {
+        const auto add = [&](float value) { state_ = mix64(state_ ^ std::bit_cast<std::uint32_t>(value)); };
+        for (int c = 0; c < 3; ++c) add(point.position[c]);
+        for (int c = 0; c < 3; ++c) add(point.wo[c]);
+    }
+
+    float next() {
+        state_ = mix64(state_ + 0x9e3779b97f4a7c15u);
+        return static_cast<float>(state_ >> 40) * 0x1p-24f;
+    }
+
+private:
+    std::uint64_t state_ = 0x2545f4914f6cdd1du;
+};
+
+/// The shading normal after a bump map: that of the surface raised along the normal `n` by a height with that `slope`
+/// along u and v.
+inline Vec3 bumped_normal(const SurfacePoint& point, const Tangents& tangents, const Vec2& slope) {
+    const Vec3 n = point.shading_normal;
+    const auto raised = [&](const Vec3& tangent, float rise) { return tangent + n * (rise - dot(n, tangent)); };
+    const Vec3 normal = cross(raised(tangents.u, slope.x), raised(tangents.v, slope.y));
+    const float squared = length_squared(normal);
+    if (!(squared > 0) || !(squared < infinity)) return n;
+    const Vec3 unit = normal * (1 / std::sqrt(squared));
+    return dot(unit, point.normal) < 0 ? -unit : unit;
+}
+
+/// The shading normal that a normal map gives as a colour.
+inline Vec3 mapped_normal(const SurfacePoint& point, const Tangents& tangents, const Rgb& color) {
+    const Vec3 local = 2.0f * color - Vec3(1);
+    const float squared = length_squared(local);
+    if (!(squared > 0)) return point.shading_normal;
+    return Basis(point.shading_normal, tangents.u).to_world(local * (1 / std::sqrt(squared)));
+}
+
+/// Goes down the layers over a point until a surface model is reached, which becomes the point's material; false where
+/// the surface is not there. `tangents()` is asked when a layer needs them.
+template <std::size_t layers>
+bool resolve_layers(const auto& data, const Vec2& uv, SurfacePoint& point, const auto& tangents) {
+    LayerChoices choices(point);
+    bool two_sided = point.material.two_sided();
+    MaterialIndex next = point.material;
+    while (next.kind() == layers) {
+        const LayerRecord& layer = data.layers[next.position()];
+        switch (layer.kind) {
+            case LayerRecord::Kind::blend:
+                next = layer.inner[choices.next() < luminance(layer.texture(uv)) ? 1 : 0];
+                break;
+            case LayerRecord::Kind::mask:
+                if (choices.next() >= luminance(layer.texture(uv))) return false;
+                next = layer.inner[0];
+                break;
+            case LayerRecord::Kind::bump_map:
+                point.shading_normal = bumped_normal(point, tangents(), layer.scale * layer.texture.gradient(uv));
+                next = layer.inner[0];
+                break;
+            case LayerRecord::Kind::normal_map:
+                point.shading_normal = mapped_normal(point, tangents(), layer.texture(uv));
+                next = layer.inner[0];
+                break;
+            case LayerRecord::Kind::both_sides: {
+                const bool behind = dot(point.wo, point.shading_normal) < 0;
+                next = layer.inner[behind ? 1 : 0];
+                two_sided = true;
+                break;
+            }
+        }
+        two_sided = two_sided || next.two_sided();
+    }
+    point.material = MaterialIndex(next.kind(), next.position(), two_sided);
+    return true;
+}
+
+/// The instance that was hit, if it changes anything.
+inline const InstanceRecord* instance_of(const Placement& placement, const embree::Hit& hit) {
+    if (hit.instance == embree::Hit::no_instance || placement.instances[hit.instance].in_place) return nullptr;
+    return &placement.instances[hit.instance];
+}
+
+/// `hit` as `locate` left it; `local` is where a sphere was hit, from its centre and in its own axes.
+inline Tangents find_tangents(const auto& data, const Placement& placement, const embree::Hit& hit, const Vec3& local) {
+    const InstanceRecord* const instance = instance_of(placement, hit);
+    Tangents result;
+    if (hit.geometry >= data.meshes.size()) {
+        result = tangents_on_sphere(data, hit.primitive, local);
+    } else if (hit.instance == embree::Hit::no_instance) {
+        result = tangents_on_triangle(data, hit, placement.accelerator.corners(hit.geometry, hit.primitive));
+    } else {
+        const GroupRecord& group = data.groups[placement.instances[hit.instance].group];
+        result =
+            tangents_on_triangle(data, hit, group.accelerator->corners(hit.geometry - group.first_mesh, hit.primitive));
+    }
+    if (instance) result = {instance->to_scene.linear * result.u, instance->to_scene.linear * result.v};
+    return result;
+}
+
+/// Finds the surface model at a `PlacedPoint`, and its material, texture coordinates and tangent; false where the surface
+/// is not there. `hit` as `locate` left it.
+template <class Point>
+[[gnu::noinline]] bool resolve(const auto& data, const Placement& placement, const embree::Hit& hit, Point& point) {
+    constexpr std::size_t kinds = std::tuple_size_v<decltype(data.bsdfs)>;
+    const bool on_sphere = hit.geometry >= data.meshes.size();
+    Vec3 local(0);
+    if (on_sphere) {
+        const InstanceRecord* const instance = instance_of(placement, hit);
+        local = on_unit_sphere(
+            data, hit.primitive,
+            instance ? normalize(glm::transpose(instance->to_scene.linear) * point.normal) : point.normal);
+    }
+    const auto tangents = [&] { return find_tangents(data, placement, hit, local); };
+    point.uv = on_sphere ? uv_on_sphere(local) : uv_on_triangle(data, hit);
+    point.tangent = Vec3(0);
+    const Vec3 normal_before = point.shading_normal;
+    if (point.material.kind() == kinds && !resolve_layers<kinds>(data, point.uv, point, tangents)) return false;
+    dispatch<kinds>(point.material.kind(), [&](auto kind) {
+        const auto& material = std::get<kind>(data.bsdfs)[point.material.position()];
+        using Model = model_of<std::remove_cvref_t<decltype(material)>>;
+        Guarded<Model>& guarded = point.model.template emplace<kind>();
+        Model& model = guarded;
+        if constexpr (std::same_as<Model, std::remove_cvref_t<decltype(material)>>) model = material;
+        else model = material.at(Place{point.uv, point});
+        if (!is_isotropic(model)) point.tangent = tangents().u;
+        if (point.shading_normal != normal_before) {
+            const Vec3 side = point.shading_frame().to_local(normal_before);
+            guarded.side = side.z < 0 ? -side : side;
+        }
+    });
+    return true;
+}
+
+/// Follows a ray from a point where the surface is not there to the first one where it is, if there is one.
+template <class Point>
+[[gnu::noinline]] void go_on(const auto& data, const Placement& placement, Ray ray, Maybe<Point>& point) {
+    float passed = 0;  // in multiples of the direction
+    for (;;) {
+        passed += point->distance;
+        ray = {.origin = point->position_towards(ray.direction),
+               .direction = ray.direction,
+               .near = 0,
+               .far = ray.far - point->distance};
+        point = {};
+        embree::Hit hit;
+        if (!(ray.far > 0) || !placement.accelerator.intersect(ray, hit)) return;
+        locate(data, placement, ray, hit, point.emplace());
+        if (resolve(data, placement, hit, *point)) break;
+    }
+    point->distance += passed;
+}
+
+}  // namespace lightswitch::detail
