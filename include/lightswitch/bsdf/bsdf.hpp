@@ -15,6 +15,11 @@ namespace lightswitch {
 /// light is refracted (Veach 1997, section 5.2).
 enum class Transport { radiance, importance };
 
+/// What travels the other way along the same path.
+constexpr Transport reversed(Transport transport) {
+    return transport == Transport::radiance ? Transport::importance : Transport::radiance;
+}
+
 /// A BSDF evaluated for one pair of directions.
 struct BsdfValue {
     Rgb value{0};         ///< the BSDF in 1/sr, without the cosine
@@ -28,6 +33,8 @@ struct BsdfSample {
     SolidAnglePdf pdf{};    ///< density of `wi`; 0 for a specular lobe, which has none
     bool specular = false;  ///< true when `wi` comes from a Dirac distribution
     float eta = 1;  ///< relative index of refraction crossed from the side of `wo` to that of `wi`; 1 for reflection
+    float reversal =
+        1;  ///< of a specular lobe: the probability of choosing it the other way round over that of this way
 };
 
 /// The three terms of Phong's model by which the `phong` method shows a surface.
@@ -50,6 +57,7 @@ struct PhongTerms {
 /// - `phong()` returns the `PhongTerms` that represent the model;
 /// - `static constexpr bool transmits = true` says that light gets through the surface;
 /// - `static constexpr bool partly_specular = true` says that some lobes are Dirac distributions, but not all;
+/// - `transmits_light()` is false where light does not get through with the parameters at hand;
 /// - `isotropic()` is false when turning the surface around its normal changes something.
 template <class B>
 concept Bsdf = requires(const B bsdf, const Vec3 direction, const Vec3 u, const Transport transport) {
@@ -65,6 +73,13 @@ inline constexpr bool transmits = [] {
     if constexpr (requires { B::transmits; }) return B::transmits;
     else return false;
 }();
+
+/// Whether light gets through a surface of this model with its parameters; `transmits` says it of all parameters.
+template <class B>
+bool transmits_light(const B& bsdf) {
+    if constexpr (requires { bsdf.transmits_light(); }) return bsdf.transmits_light();
+    else return transmits<B>;
+}
 
 /// Whether turning the surface around its normal changes nothing. For others scenes find out where u grows.
 template <class B>

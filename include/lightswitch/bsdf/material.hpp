@@ -2,7 +2,7 @@
 
 // What a scene stores of a surface: a model, or something that gives one at every place.
 
-#include <lightswitch/bsdf/bsdf.hpp>
+#include <lightswitch/bsdf/mapped.hpp>
 #include <lightswitch/geometry/place.hpp>
 
 #include <variant>
@@ -50,37 +50,12 @@ using model_of = typename detail::ModelOf<M>::type;
 template <PlacedMaterial M>
 inline constexpr bool transmits<M> = transmits<model_of<M>>;
 
-/// A surface model under a shading normal that a texture has turned. What would come from or go to the other side of the
-/// surface than it does under the normal before, `side` in the frame of the model, is cut off: so nothing shines through
-/// from behind, and where the turned surface cannot be seen it is black, as in Mitsuba 3.
-template <Bsdf B>
-struct Guarded : B {
-    Vec3 side{0, 0, 1};
-
-    BsdfValue evaluate(const Vec3& wo, const Vec3& wi, Transport transport) const {
-        if (!(keeps(wo) && keeps(wi))) return {};
-        return B::evaluate(wo, wi, transport);
-    }
-    Maybe<BsdfSample> sample(const Vec3& wo, const Vec3& u, Transport transport) const {
-        if (!keeps(wo)) return {};
-        const Maybe<BsdfSample> result = B::sample(wo, u, transport);
-        if (!result || !keeps(result->wi)) return {};
-        return result;
-    }
-
-private:
-    bool keeps(const Vec3& direction) const { return direction.z * dot(side, direction) > 0; }
-};
-
-template <class B>
-inline constexpr bool transmits<Guarded<B>> = transmits<B>;
-
 /// A point on a surface of a scene in which materials differ from place to place, with the model that was found there.
 template <class... M>
 struct PlacedPoint : SurfacePoint {
     Vec2 uv{0};
-    Vec3 tangent{0};                              ///< where u grows, any length; 0 where nothing asks for it
-    std::variant<Guarded<model_of<M>>...> model;  ///< by the kind of the material
+    Vec3 tangent{0};                             ///< where u grows, any length; 0 where nothing asks for it
+    std::variant<Mapped<model_of<M>>...> model;  ///< by the kind of the material
 
     [[gnu::always_inline]] Basis shading_frame() const {
         Basis frame = tangent == Vec3(0) ? Basis(shading_normal) : Basis(shading_normal, tangent);

@@ -2,8 +2,8 @@
 
 // Scene files of Mitsuba 3 (a subset of its XML).
 
-#include <lightswitch/load/mitsuba_bsdf.hpp>
 #include <lightswitch/load/mitsuba_camera.hpp>
+#include <lightswitch/load/mitsuba_material.hpp>
 #include <lightswitch/load/obj.hpp>
 #include <lightswitch/load/ply.hpp>
 
@@ -28,7 +28,11 @@ class MitsubaReader {
 public:
     MitsubaReader(const std::filesystem::path& path, const std::map<std::string, std::string>& defines,
                   Notices* notices)
-        : folder_(path.parent_path()), file_(path, defines), textures_(file_, folder_), notices_(notices) {
+        : folder_(path.parent_path()),
+          file_(path, defines),
+          textures_(file_, folder_),
+          materials_(file_, textures_, scene_),
+          notices_(notices) {
         scene_.name = path.stem().string();
         scene_.files.push_back(path.string());
     }
@@ -42,7 +46,9 @@ public:
 
         // Textures and BSDFs first: those that nothing uses are checked too.
         for (const auto node : element.objects({"texture"})) textures_.read(node);
-        for (const auto node : element.objects({"bsdf"})) read_material(file_, node, textures_);
+        LibraryDescription unused;
+        MaterialReader checked(file_, textures_, unused);
+        for (const auto node : element.objects({"bsdf"})) checked.read(node);
         if (const auto node = at_most_one(element, "integrator")) read_integrator(file_, *node, scene_);
         const auto sensor = at_most_one(element, "sensor");
         if (!sensor) element.error("there is no camera: add a <sensor>");
@@ -67,6 +73,16 @@ private:
 
     void read_shape(pugi::xml_node node) {
         XmlElement element(file_, node);
+        if (element.type() == "shapegroup") {
+            read_group(node);
+        } else if (element.type() == "instance") {
+            read_instance(element);
+        } else {
+            scene_.shapes.push_back(read_one_shape(element));
+        }
+    }
+
+    LibraryDescription::Shape read_one_shape(XmlElement& element) {
         const auto bsdfs = element.objects({"bsdf", "ref"});
         if (bsdfs.size() > 1) fail(file_.origin(bsdfs[1]), "is the second bsdf of the shape");
         const auto light = at_most_one(element, "emitter");
@@ -75,9 +91,45 @@ private:
 
         auto geometry = read_geometry(element);
         element.finish();
-        scene_.add(std::move(geometry),
-                   bsdfs.empty() ? default_material(light.has_value(), element) : material(bsdfs[0]), emission,
-                   element.origin());
+        return {std::move(geometry), material_of(bsdfs, emission.has_value(), element.origin()), emission,
+                element.origin()};
+    }
+
+    std::size_t material_of(const std::vector<pugi::xml_node>& bsdfs, bool light, const Origin& origin) {
+        if (bsdfs.empty()) return materials_.by_default(light, origin);
+        const bool reference = std::string_view(bsdfs[0].name()) == "ref";
+        const pugi::xml_node bsdf = reference ? file_.target(bsdfs[0], "bsdf") : bsdfs[0];
+        if (light && std::string_view(bsdf.attribute("type").value()) == "null")
+            return materials_.invisible_light(file_.origin(bsdf));
+        return materials_.read(bsdf);
+    }
+
+    void read_instance(XmlElement& element) {
+        const DMat4 to_world = element.transform("to_world").value_or(DMat4(1));
+        const auto inner = element.objects({"shape", "ref"});
+        if (inner.size() != 1) element.error("needs one shapegroup, not " + std::to_string(inner.size()));
+        element.finish();
+        const bool reference = std::string_view(inner[0].name()) == "ref";
+        scene_.instances.push_back(
+            {read_group(reference ? file_.target(inner[0], "shape") : inner[0]), to_world, element.origin()});
+    }
+
+    /// Index of the group of a `<shape type="shapegroup">`, which is read once.
+    std::size_t read_group(pugi::xml_node node) {
+        const auto known = groups_.find(node.offset_debug());
+        if (known != groups_.end()) return known->second;
+        XmlElement element(file_, node);
+        if (element.type() != "shapegroup") element.error("an instance is of a shapegroup");
+        LibraryDescription::Group group{.shapes = {}, .origin = element.origin()};
+        for (const auto shape : element.objects({"shape"})) {
+            XmlElement inner(file_, shape);
+            if (inner.type() == "shapegroup" || inner.type() == "instance")
+                inner.error("a shapegroup cannot hold other groups or instances");
+            group.shapes.push_back(read_one_shape(inner));
+        }
+        element.finish();
+        scene_.groups.push_back(std::move(group));
+        return groups_[node.offset_debug()] = scene_.groups.size() - 1;
     }
 
     std::variant<Mesh, Sphere> read_geometry(XmlElement& element) {
@@ -200,31 +252,14 @@ private:
         scene_.add(std::move(source), element.origin());
     }
 
-    /// Index of the material of a `<bsdf>` or `<ref>`; one material however many shapes use it.
-    std::size_t material(pugi::xml_node node) {
-        const pugi::xml_node target = resolve_bsdf(file_, node);
-        const auto known = materials_.find(target.offset_debug());
-        if (known != materials_.end()) return known->second;
-        ReadMaterial read = read_material(file_, target, textures_);
-        scene_.materials.push_back({std::move(read.bsdf), file_.origin(target), read.two_sided});
-        return materials_[target.offset_debug()] = scene_.materials.size() - 1;
-    }
-
-    /// Mitsuba gives a shape without a BSDF a grey one, or a black one when it is a light.
-    std::size_t default_material(bool light, const XmlElement& shape) {
-        auto& index = light ? black_ : grey_;
-        if (!index) index = scene_.add(Lambert{.reflectance = Rgb(light ? 0.0f : 0.5f)}, shape.origin());
-        return *index;
-    }
-
     std::filesystem::path folder_;
     XmlFile file_;
     TextureReader textures_;
+    LibraryDescription scene_;
+    MaterialReader materials_;
     Notices* notices_;
     std::set<std::string> noticed_;  ///< several shapes may use one file
-    LibraryDescription scene_;
-    std::map<std::ptrdiff_t, std::size_t> materials_;
-    std::optional<std::size_t> grey_, black_;
+    std::map<std::ptrdiff_t, std::size_t> groups_;
     bool has_environment_ = false;
 };
 

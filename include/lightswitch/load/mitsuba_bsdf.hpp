@@ -65,14 +65,8 @@ inline RoughConductor read_rough_conductor(XmlElement& element) {
     return result;
 }
 
-/// The element that a `<ref>` stands for, or the element itself. Throws unless it is a BSDF.
-inline pugi::xml_node resolve_bsdf(const XmlFile& file, pugi::xml_node node) {
-    return std::string_view(node.name()) == "ref" ? file.target(node, "bsdf") : node;
-}
-
-/// Reads a `<bsdf>`, with Mitsuba's defaults for what is left out.
-inline LibraryBsdf read_bsdf(const XmlFile& file, pugi::xml_node node, TextureReader& textures) {
-    XmlElement element(file, node);
+/// Reads a `<bsdf>` that is a surface model, with Mitsuba's defaults for what is left out.
+inline LibraryBsdf read_bsdf(XmlElement& element, TextureReader& textures) {
     const auto finished = [&](const auto& bsdf) {
         LibraryBsdf result = textures.with_textures(element, bsdf);
         element.finish();
@@ -93,28 +87,8 @@ inline LibraryBsdf read_bsdf(const XmlFile& file, pugi::xml_node node, TextureRe
         result.transmittance = element.color("specular_transmittance", 1);
         return finished(result);
     }
-    element.unknown_type("diffuse, conductor, roughconductor, dielectric and twosided");
-}
-
-/// A `<bsdf>`, and whether it is a `twosided` one: then what is inside.
-struct ReadMaterial {
-    LibraryBsdf bsdf;
-    bool two_sided = false;
-};
-inline ReadMaterial read_material(const XmlFile& file, pugi::xml_node node, TextureReader& textures) {
-    if (std::string_view(node.attribute("type").value()) != "twosided") return {read_bsdf(file, node, textures)};
-    XmlElement element(file, node);
-    const auto inner = element.objects({"bsdf", "ref"});
-    if (inner.size() != 1)
-        element.error("needs exactly one bsdf inside, for both sides, not " + std::to_string(inner.size()));
-    const pugi::xml_node front = resolve_bsdf(file, inner[0]);
-    if (std::string_view(front.attribute("type").value()) == "twosided")
-        fail(file.origin(inner[0]), "a twosided bsdf cannot be inside another one");
-    ReadMaterial result{read_bsdf(file, front, textures), true};
-    if (std::visit([]<class B>(const B&) { return transmits<B>; }, result.bsdf))
-        fail(file.origin(inner[0]), "a bsdf that transmits light cannot be twosided");
-    element.finish();
-    return result;
+    element.unknown_type(
+        "diffuse, conductor, roughconductor, dielectric, twosided, mask, null, blendbsdf, bumpmap and normalmap");
 }
 
 }  // namespace lightswitch::detail

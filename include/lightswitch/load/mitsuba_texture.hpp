@@ -30,6 +30,25 @@ public:
         return textures_.emplace(node.offset_debug(), texture).first->second;
     }
 
+    /// The `<texture>` (or `<ref>`) of that name, which must be there.
+    Texture texture(XmlElement& element, const std::string& name) {
+        const auto node = element.texture(name);
+        if (!node) element.error("needs a texture named " + quote(name));
+        return read(*node);
+    }
+    /// The only `<texture>` inside, whatever its name.
+    Texture only_texture(XmlElement& element) {
+        const auto nodes = element.objects({"texture"});
+        if (nodes.size() != 1) element.error("needs exactly one texture inside, not " + std::to_string(nodes.size()));
+        return read(nodes[0]);
+    }
+    /// A parameter that is a number or colour, or a texture. Without `otherwise` it must be there.
+    Texture value_or_texture(XmlElement& element, const std::string& name, std::optional<float> otherwise = {}) {
+        if (const auto node = element.texture(name)) return read(*node);
+        if (!otherwise && !element.has(name)) element.error("the parameter " + quote(name) + " is missing");
+        return Texture(element.color(name, otherwise.value_or(0)));
+    }
+
     /// The image files that were read.
     std::vector<std::string> files() const {
         std::vector<std::string> result;

@@ -59,8 +59,7 @@ struct Arrival {
     Basis basis;
     Vec3 from;
 
-    [[gnu::always_inline]] explicit Arrival(const auto& at)
-        : basis(at.shading_frame()), from(basis.to_local(at.wo)) {}
+    [[gnu::always_inline]] explicit Arrival(const auto& at) : basis(at.shading_frame()), from(basis.to_local(at.wo)) {}
 };
 
 /// A BSDF evaluated between the direction that a path comes from and one that it could leave by.
@@ -95,7 +94,7 @@ template <Transport transport>
                 if (!is_black(scattering.value)) {
                     result = {.value = scattering.value * cosine_factor<transport>(at, out),
                               .pdf = scattering.pdf,
-                              .reverse_pdf = bsdf.evaluate(to, from, transport).pdf};
+                              .reverse_pdf = bsdf.evaluate(to, from, reversed(transport)).pdf};
                 }
             }
             return result;
@@ -159,7 +158,8 @@ public:
             at, [&](const auto& bsdf) __attribute__((always_inline)) {
                 const auto result = bsdf.sample(arrival.from, Vec3(direction, choices.x), transport);
                 if constexpr (!std::remove_cvref_t<decltype(bsdf)>::specular)
-                    if (result && !result->specular) reverse = bsdf.evaluate(result->wi, arrival.from, transport).pdf;
+                    if (result && !result->specular)
+                        reverse = bsdf.evaluate(result->wi, arrival.from, reversed(transport)).pdf;
                 return result;
             });
         if (!scattered) return false;
@@ -176,7 +176,8 @@ public:
         const double cosine = std::abs(dot(at.normal, out));
         PartialWeights& w = vertex_.weights;
         if (scattered->specular) {  // nothing can connect or merge here; the densities of both directions cancel
-            w = {.last = 0, .connections = w.connections * heuristic(cosine), .merges = w.merges * heuristic(cosine)};
+            const double back = heuristic(cosine * double(scattered->reversal));
+            w = {.last = 0, .connections = w.connections * back, .merges = w.merges * back};
         } else {
             const double pdf = scattered->pdf.value, forward = heuristic(cosine / pdf), back = heuristic(reverse.value);
             w = {.last = heuristic(1 / pdf),

@@ -39,24 +39,37 @@ inline std::string_view scene_type_name(const AnyScene& scene) {
 namespace detail {
 
 template <class SceneType>
-struct Capacity;
+class Capacity;
 
 template <class... B, class... L, class... C>
-struct Capacity<Scene<Bsdfs<B...>, Lights<L...>, Cameras<C...>>> {
+class Capacity<Scene<Bsdfs<B...>, Lights<L...>, Cameras<C...>>> {
+public:
+    /// Of scene types without placed materials.
     static bool holds(const LibraryDescription& scene) {
         for (const auto& material : scene.materials)
-            if (!std::visit([](const auto& bsdf) { return is_one_of<std::remove_cvref_t<decltype(bsdf)>, B...>; },
-                            material.bsdf))
+            if (material.layer || !std::visit([](const auto& bsdf) { return holds_model(bsdf); }, material.bsdf))
                 return false;
         for (const auto& placed : scene.sources)
             if (!((placed.source.light_type() == typeid(L)) || ...)) return false;
         if (!(C::serves(scene.camera) || ...)) return false;
-        for (const auto& shape : scene.shapes) {
-            if (!shape.emission) continue;
+        const auto holds_shape = [](const auto& shape) {
+            if (!shape.emission) return true;
             const bool sphere = std::holds_alternative<Sphere>(shape.geometry);
-            if (sphere ? !is_one_of<SphereLight, L...> : !is_one_of<TriangleLight, L...>) return false;
-        }
-        return true;
+            return sphere ? is_one_of<SphereLight, L...> : is_one_of<TriangleLight, L...>;
+        };
+        const auto holds_group = [&](const auto& group) {
+            return std::all_of(group.shapes.begin(), group.shapes.end(), holds_shape);
+        };
+        return std::all_of(scene.shapes.begin(), scene.shapes.end(), holds_shape) &&
+               std::all_of(scene.groups.begin(), scene.groups.end(), holds_group);
+    }
+
+private:
+    template <class Model>
+    static bool holds_model(const Model& model) {
+        if constexpr (!is_one_of<Model, B...>) return false;
+        else if constexpr (Bsdf<Model>) return is_isotropic(model);
+        else return true;
     }
 };
 

@@ -64,12 +64,11 @@ private:
             return {Kind::blend, {indices_[blend->first], indices_[blend->second]}, blend->weight};
         if (const auto* mask = std::get_if<Mask>(&layer)) return {Kind::mask, {indices_[mask->inner]}, mask->opacity};
         if (const auto* map = std::get_if<NormalMap>(&layer))
-            return {Kind::normal_map, {indices_[map->inner]}, map->normals};
+            return {Kind::normal_map, {indices_[map->inner]}, map->normals, 1, map->flips, map->shadows};
         if (const auto* bump = std::get_if<BumpMap>(&layer))
-            return {Kind::bump_map,
-                    {indices_[bump->inner]},
-                    bump->height,
-                    static_cast<float>(data_.space.length(double(bump->scale)))};
+            return {Kind::bump_map, {indices_[bump->inner]},
+                    bump->height,   static_cast<float>(data_.space.length(double(bump->scale))),
+                    bump->flips,    bump->shadows};
         const auto& sides = std::get<BothSides>(layer);
         return {Kind::both_sides, {indices_[sides.front], indices_[sides.back]}};
     }

@@ -24,16 +24,19 @@ struct Mask {
 };
 
 /// `inner` under the normal of a surface that is raised by `scale * height` (scene units; luminance), after Blinn 1978.
+/// What becomes of directions that see the raised surface and the true one from different sides: `Mapped`.
 struct BumpMap {
     std::size_t inner;
     Texture height;
     float scale = 1;
+    bool flips = true, shadows = true;  ///< see `MappedNormal`
 };
 
 /// `inner` under the normal 2 c - 1 for the colour c, in the frame of dp/du, its right angle and the shading normal.
 struct NormalMap {
     std::size_t inner;
     Texture normals;
+    bool flips = true, shadows = true;  ///< see `MappedNormal`
 };
 
 /// `front` where the surface is seen from its front, and `back`, in a mirrored frame, where from behind.

@@ -97,11 +97,21 @@ inline Vec3 mapped_normal(const SurfacePoint& point, const Tangents& tangents, c
 }
 
 /// Goes down the layers over a point until a surface model is reached, which becomes the point's material; false where
-/// the surface is not there. `tangents()` is asked when a layer needs them.
+/// the surface is not there. `tangents()` is asked when a layer needs them; `map` says what maps have done to the shading
+/// normal, all but the normal before, for which the frame must be known.
 template <std::size_t layers>
-bool resolve_layers(const auto& data, const Vec2& uv, SurfacePoint& point, const auto& tangents) {
+bool resolve_layers(const auto& data, const Vec2& uv, SurfacePoint& point, MappedNormal& map, const auto& tangents) {
     LayerChoices choices(point);
+    const Vec3 before = point.shading_normal;
+    const bool behind = dot(point.wo, before) < 0;
     bool two_sided = point.material.two_sided();
+    const auto take = [&](const LayerRecord& layer, const Vec3& normal) {
+        // Under a two-sided layer that is seen from behind the map lies on the mirrored surface.
+        const bool mirrored = two_sided && behind;
+        point.shading_normal = mirrored ? normal - 2 * dot(normal, before) * before : normal;
+        two_sided = two_sided && !mirrored;
+        map = {.active = true, .flips = layer.flips, .shadows = layer.shadows};
+    };
     MaterialIndex next = point.material;
     while (next.kind() == layers) {
         const LayerRecord& layer = data.layers[next.position()];
@@ -114,19 +124,17 @@ bool resolve_layers(const auto& data, const Vec2& uv, SurfacePoint& point, const
                 next = layer.inner[0];
                 break;
             case LayerRecord::Kind::bump_map:
-                point.shading_normal = bumped_normal(point, tangents(), layer.scale * layer.texture.gradient(uv));
+                take(layer, bumped_normal(point, tangents(), layer.scale * layer.texture.gradient(uv)));
                 next = layer.inner[0];
                 break;
             case LayerRecord::Kind::normal_map:
-                point.shading_normal = mapped_normal(point, tangents(), layer.texture(uv));
+                take(layer, mapped_normal(point, tangents(), layer.texture(uv)));
                 next = layer.inner[0];
                 break;
-            case LayerRecord::Kind::both_sides: {
-                const bool behind = dot(point.wo, point.shading_normal) < 0;
+            case LayerRecord::Kind::both_sides:
                 next = layer.inner[behind ? 1 : 0];
                 two_sided = true;
                 break;
-            }
         }
         two_sided = two_sided || next.two_sided();
     }
@@ -174,18 +182,20 @@ template <class Point>
     point.uv = on_sphere ? uv_on_sphere(local) : uv_on_triangle(data, hit);
     point.tangent = Vec3(0);
     const Vec3 normal_before = point.shading_normal;
-    if (point.material.kind() == kinds && !resolve_layers<kinds>(data, point.uv, point, tangents)) return false;
+    MappedNormal map;
+    if (point.material.kind() == kinds && !resolve_layers<kinds>(data, point.uv, point, map, tangents)) return false;
     dispatch<kinds>(point.material.kind(), [&](auto kind) {
         const auto& material = std::get<kind>(data.bsdfs)[point.material.position()];
         using Model = model_of<std::remove_cvref_t<decltype(material)>>;
-        Guarded<Model>& guarded = point.model.template emplace<kind>();
-        Model& model = guarded;
+        Mapped<Model>& mapped = point.model.template emplace<kind>();
+        Model& model = mapped;
         if constexpr (std::same_as<Model, std::remove_cvref_t<decltype(material)>>) model = material;
         else model = material.at(Place{point.uv, point});
         if (!is_isotropic(model)) point.tangent = tangents().u;
-        if (point.shading_normal != normal_before) {
-            const Vec3 side = point.shading_frame().to_local(normal_before);
-            guarded.side = side.z < 0 ? -side : side;
+        if (map.active) {
+            const Vec3 before = point.shading_frame().to_local(normal_before);
+            map.before = before.z < 0 ? -before : before;
+            mapped.map = map;
         }
     });
     return true;

@@ -64,6 +64,7 @@ struct LayerRecord {
     std::array<MaterialIndex, 2> inner;
     Texture texture{Rgb(0)};
     float scale = 1;  ///< of a bump map, in render space
+    bool flips = false, shadows = false;
 };
 
 /// The point that rays find in a scene of such materials.

@@ -38,6 +38,11 @@ public:
         return with_textures([&](const Texture& texture) { return texture(place.uv); });
     }
 
+    /// Whether light gets through with the greatest values of the textures.
+    bool transmits_light() const {
+        return lightswitch::transmits_light(with_textures([](const Texture& texture) { return texture.most(); }));
+    }
+
     /// The model's own word on the least and the largest values of the textures.
     std::string problem() const {
         for (const auto& texture : textures_)
