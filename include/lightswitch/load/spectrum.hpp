@@ -40,7 +40,7 @@ Rgb spectrum_to_rgb(const Spectrum& spectrum, SpectrumUse use, const Origin& whe
 
 /// The colour, as an emission, of a black body of `temperature` kelvin, in W/(m^2 sr nm) and between two wavelengths in
 /// nanometres (Planck's law; the constants are those of the SI of 2019). Mitsuba's RGB variants refuse this type; its
-/// spectral ones see 0.1 percent more, as the sum above is that much below the integral, and keep negative channels.
+/// spectral ones see 0.1 percent more, for the sum above is that much below the integral, and keep negative channels.
 ///
 /// Throws `Error`, of that place, unless the temperature is positive, or when the colour is too large for floats.
 Rgb blackbody_to_rgb(double temperature, double lowest = detail::cie_first, double highest = detail::cie_last,
@@ -61,7 +61,7 @@ inline constexpr std::uintmax_t max_spectrum_bytes = std::uintmax_t(1) << 20;
 inline constexpr int spectrum_steps = 1000;
 inline constexpr double cie_y_sum = 106.7502593994140625, cie_d65_mean = 98.99741751876255;
 
-/// The colour, not clamped, of the emission that is `value(wavelength)` at a wavelength in nanometres; or in daylight of
+/// The colour, not clamped, of the emission that is `value(wavelength)` at a wavelength in nanometres; in daylight, of
 /// that reflectance.
 template <class F>
 DVec3 sum_spectrum(F&& value, bool in_daylight) {
