@@ -67,22 +67,24 @@ private:
     std::uint32_t bits_ = empty;
 };
 
-/// Which material a surface has, and whether its back looks like its front: a bit of the position.
+/// Which material a surface has, and two bits about it: whether its back looks like its front, and whether light that
+/// comes from either side can matter on the other.
 class MaterialIndex {
 public:
-    static constexpr std::size_t max_position = TypedIndex::max_position >> 1;
+    static constexpr std::size_t max_position = TypedIndex::max_position >> 2;
 
     constexpr MaterialIndex() : MaterialIndex(0, 0) {}
     /// `kind` at most `TypedIndex::max_kind`, `position` at most `max_position`; unchecked.
-    constexpr MaterialIndex(std::size_t kind, std::size_t position, bool two_sided = false)
-        : index_(kind, position | (two_sided ? both_sides : 0)) {}
+    constexpr MaterialIndex(std::size_t kind, std::size_t position, bool two_sided = false, bool lit_through = false)
+        : index_(kind, position | (two_sided ? both_sides : 0) | (lit_through ? through : 0)) {}
 
     constexpr std::size_t kind() const { return index_.kind(); }
     constexpr std::size_t position() const { return index_.position() & max_position; }
     constexpr bool two_sided() const { return (index_.position() & both_sides) != 0; }
+    constexpr bool lit_through() const { return (index_.position() & through) != 0; }
 
 private:
-    static constexpr std::size_t both_sides = max_position + 1;
+    static constexpr std::size_t both_sides = max_position + 1, through = 2 * both_sides;
     TypedIndex index_;
 };
 

@@ -26,6 +26,9 @@ struct SurfacePoint {
         return dot(shading_normal, wo) < 0 ? -shading_normal : shading_normal;
     }
 
+    /// On which side light matters here: the facing normal, or 0 where both sides count.
+    [[gnu::always_inline]] Vec3 lit_normal() const { return material.lit_through() ? Vec3(0) : facing_normal(); }
+
     /// The frame in which the surface model is asked: of a two-sided surface that is seen from the back mirrored, so
     /// that the model sees its front.
     [[gnu::always_inline]] Basis shading_frame() const {

@@ -5,7 +5,8 @@
 namespace lightswitch {
 
 /// The same radiance from all directions beyond the scene. Sampled by the cosine over the hemisphere that the
-/// surface sees, which is exact for a diffuse surface that nothing shadows.
+/// surface sees, which is exact for a diffuse surface that nothing shadows; evenly over the sphere for one that light
+/// gets through.
 struct ConstantEnvironment {
     static constexpr bool infinite = true;
 
@@ -17,18 +18,14 @@ struct ConstantEnvironment {
     Rgb radiance(const Vec3&) const { return value; }
 
     [[gnu::always_inline]] LightSample sample(const SurfacePoint& from, const Vec2& u) const {
+        if (from.material.lit_through()) [[unlikely]]
+            return towards(from, uniform_sphere(u), uniform_sphere_pdf());
         const Vec3 local = cosine_hemisphere(u);
-        const Vec3 wi = Basis(from.facing_normal()).to_world(local);
-        return {.wi = wi,
-                .radiance = value,
-                .pdf = cosine_hemisphere_pdf(local.z),
-                .dirac = false,
-                .visibility = from.spawn(wi),
-                .spread = cosine_hemisphere_pdf(local.z).value / emission_pdf(wi).value};
+        return towards(from, Basis(from.facing_normal()).to_world(local), cosine_hemisphere_pdf(local.z));
     }
 
     [[gnu::always_inline]] SolidAnglePdf pdf(const Vec3& normal, const Vec3& wi) const {
-        return cosine_hemisphere_pdf(dot(normal, wi));
+        return normal == Vec3(0) ? uniform_sphere_pdf() : cosine_hemisphere_pdf(dot(normal, wi));
     }
 
     LightEmission emit(const Vec2& place, const Vec2& direction) const {
@@ -39,7 +36,17 @@ struct ConstantEnvironment {
     }
     EmissionPdf emission_pdf(const Vec3&) const { return uniform_disk_pdf(scene_radius) * uniform_sphere_pdf(); }
     float spread(const SurfacePoint& at, const Vec3& wi, const Vec3&) const {
-        return pdf(at.facing_normal(), wi).value / emission_pdf(wi).value;
+        return pdf(at.lit_normal(), wi).value / emission_pdf(wi).value;
+    }
+
+private:
+    [[gnu::always_inline]] LightSample towards(const SurfacePoint& from, const Vec3& wi, SolidAnglePdf pdf) const {
+        return {.wi = wi,
+                .radiance = value,
+                .pdf = pdf,
+                .dirac = false,
+                .visibility = from.spawn(wi),
+                .spread = pdf.value / emission_pdf(wi).value};
     }
 };
 

@@ -93,12 +93,13 @@ public:
         return cell_pdf(at.column, at.row);
     }
 
-    /// A direction for a surface with that normal: some by the radiance, and the others by the cosine. The map must not
-    /// be empty.
+    /// A direction for a surface with that normal: some by the radiance, and the others by the cosine; evenly over the
+    /// sphere where the normal is 0. The map must not be empty.
     Sample sample(const Vec3& normal, const Vec2& u) const {
         const interval::Found choice = interval::find(choices_, u.y);
         if (choice.part == bands_.size()) {
-            const Vec3 wi = Basis(normal).to_world(cosine_hemisphere({u.x, choice.place}));
+            const Vec2 rest(u.x, choice.place);
+            const Vec3 wi = normal == Vec3(0) ? uniform_sphere(rest) : Basis(normal).to_world(cosine_hemisphere(rest));
             const Place at = place(wi);
             return mixed(normal, wi, at.column, at.row);
         }
@@ -226,10 +227,10 @@ private:
     Sample mixed(const Vec3& normal, const Vec3& wi, std::size_t column, std::size_t row) const {
         if (empty()) return {wi, {}, {}};
         const float by_radiance = interval::probability(choices_, row) * cells_.probability_in_row(column, row);
-        const float by_cosine = interval::probability(choices_, bands_.size());
-        return {wi,
-                {by_radiance * bands_[row].density + by_cosine * cosine_hemisphere_pdf(dot(normal, wi)).value},
-                cell_pdf(column, row)};
+        const float others = interval::probability(choices_, bands_.size());
+        const SolidAnglePdf pdf_of_others =
+            normal == Vec3(0) ? uniform_sphere_pdf() : cosine_hemisphere_pdf(dot(normal, wi));
+        return {wi, {by_radiance * bands_[row].density + others * pdf_of_others.value}, cell_pdf(column, row)};
     }
 
     std::vector<Rgb> texels_;
@@ -262,7 +263,7 @@ struct MappedEnvironment {
 
     LightSample sample(const SurfacePoint& from, const Vec2& u) const {
         if (map->empty()) return {};
-        const EnvironmentMap::Sample chosen = map->sample(to_map(from.facing_normal()), u);
+        const EnvironmentMap::Sample chosen = map->sample(to_map(from.lit_normal()), u);
         const Vec3 wi = to_world * chosen.wi;
         return {.wi = wi,
                 .radiance = scale * map->radiance(chosen.wi),
@@ -285,7 +286,7 @@ struct MappedEnvironment {
     EmissionPdf emission_pdf(const Vec3& wi) const { return emission_pdf(map->pdf(to_map(wi))); }
     float spread(const SurfacePoint& at, const Vec3& wi, const Vec3&) const {
         const float emission = emission_pdf(wi).value;
-        return emission > 0 ? pdf(at.facing_normal(), wi).value / emission : 0;
+        return emission > 0 ? pdf(at.lit_normal(), wi).value / emission : 0;
     }
 
 private:

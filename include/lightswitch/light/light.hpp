@@ -63,7 +63,7 @@ concept AreaLight = Light<L> &&
 };
 
 /// A light that surrounds the scene. `radiance(wi)` arrives from the direction `wi`, which `sample`, at a
-/// point whose `facing_normal()` is `normal`, chooses with density `pdf(normal, wi)`.
+/// point whose `lit_normal()` is `normal`, chooses with density `pdf(normal, wi)`.
 template <class L>
 concept EnvironmentLight = Light<L> && requires(const L light, const Vec3 direction) {
     { light.radiance(direction) } -> std::same_as<Rgb>;

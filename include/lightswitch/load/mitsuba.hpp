@@ -86,13 +86,13 @@ private:
         const auto bsdfs = element.objects({"bsdf", "ref"});
         if (bsdfs.size() > 1) fail(file_.origin(bsdfs[1]), "is the second bsdf of the shape");
         const auto light = at_most_one(element, "emitter");
-        std::optional<Rgb> emission;
-        if (light) emission = read_area_light(*light);
-
-        auto geometry = read_geometry(element);
+        LibraryDescription::Shape shape;
+        if (light) read_area_light(*light, shape);
+        shape.geometry = read_geometry(element);
         element.finish();
-        return {std::move(geometry), material_of(bsdfs, emission.has_value(), element.origin()), emission,
-                element.origin()};
+        shape.material = material_of(bsdfs, light.has_value(), element.origin());
+        shape.origin = element.origin();
+        return shape;
     }
 
     std::size_t material_of(const std::vector<pugi::xml_node>& bsdfs, bool light, const Origin& origin) {
@@ -184,13 +184,17 @@ private:
         return flip ? mesh.flipped() : mesh;
     }
 
-    Rgb read_area_light(pugi::xml_node node) {
+    void read_area_light(pugi::xml_node node, LibraryDescription::Shape& shape) {
         XmlElement element(file_, node);
         if (element.type() != "area") element.unknown_type("area, for a shape");
         if (element.has("to_world")) fail(element.origin("to_world"), "an area light is where its shape is");
-        const Rgb radiance = element.color("radiance", 1, XmlElement::Color::emission);
+        if (const auto texture = element.texture("radiance")) {
+            shape.emission = Rgb(1);
+            shape.emission_texture = textures_.read(*texture);
+        } else {
+            shape.emission = element.color("radiance", 1, XmlElement::Color::emission);
+        }
         element.finish();
-        return radiance;
     }
 
     void read_emitter(pugi::xml_node node) {

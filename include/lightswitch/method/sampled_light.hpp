@@ -15,7 +15,7 @@ public:
         sampled_ = sampled;
         pdf_ = pdf;
         from_ = at.position;
-        from_normal_ = at.facing_normal();
+        from_normal_ = at.lit_normal();
     }
 
     /// Of the light that is met at `hit`.

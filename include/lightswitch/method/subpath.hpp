@@ -185,14 +185,14 @@ public:
                  .merges = forward * (w.merges * back + w.last * merge_weights_.connect + 1)};
         }
         previous_ = at.position;
-        previous_normal_ = at.facing_normal();
+        previous_normal_ = at.lit_normal();
         ray_ = at.spawn(out);
         return true;
     }
 
     const PathVertex<Point>& vertex() const { return vertex_; }
     const Ray& ray() const { return ray_; }
-    /// Where the vertex before stands, and its normal on the side that the path came to.
+    /// Where the vertex before stands, and its `lit_normal()`.
     const Vec3& previous() const { return previous_; }
     const Vec3& previous_normal() const { return previous_normal_; }
     /// Whether the path starts at a point or directional light.

@@ -54,6 +54,7 @@ public:
         if (!(C::serves(scene.camera) || ...)) return false;
         const auto holds_shape = [](const auto& shape) {
             if (!shape.emission) return true;
+            if (shape.emission_texture) return is_one_of<TexturedTriangleLight, L...>;
             const bool sphere = std::holds_alternative<Sphere>(shape.geometry);
             return sphere ? is_one_of<SphereLight, L...> : is_one_of<TriangleLight, L...>;
         };

@@ -10,14 +10,15 @@
 #include <lightswitch/scene/description.hpp>
 #include <lightswitch/scene/rounding.hpp>
 #include <lightswitch/scene/scene.hpp>
+#include <lightswitch/texture/textured_triangle_light.hpp>
 
 #include <chrono>
 
 namespace lightswitch {
 
 /// Every kind of light that a description can ask for.
-using AllLights =
-    Lights<ConstantEnvironment, MappedEnvironment, DirectionalLight, PointLight, SpotLight, SphereLight, TriangleLight>;
+using AllLights = Lights<ConstantEnvironment, MappedEnvironment, DirectionalLight, PointLight, SpotLight, SphereLight,
+                         TriangleLight, TexturedTriangleLight>;
 
 /// How a scene is built.
 struct BuildOptions {
@@ -198,6 +199,9 @@ private:
         const auto first_uvs = static_cast<std::uint32_t>(data_.uvs.size());
         if (!mesh.normals.empty()) record.shading_normals = static_cast<std::uint32_t>(data_.shading_normals.size());
         Emitter emitter{.strength = shape.emission.value_or(Rgb(0))};
+        std::shared_ptr<const Texture> emission_texture;
+        if (shape.emission_texture) emission_texture = std::make_shared<const Texture>(*shape.emission_texture);
+        Rgb mean_emission(0);
         DVec3 centroid(0);
         double mesh_area = 0, needle_area = 0;
         bool lost = false;
@@ -223,15 +227,23 @@ private:
             if (shape.emission) {
                 const double area = twice_area / 2;
                 const Vec3 normal(cross / twice_area);
-                const TypedIndex light = add_light(
-                    TriangleLight{.corner = Vec3(a),
-                                  .edge1 = Vec3(b - a),
-                                  .edge2 = Vec3(c - a),
-                                  .normal = normal,
-                                  .emission = *shape.emission,
-                                  .density = {static_cast<float>(1 / area)},
-                                  .offset = intersection_error(a, b, c, twice_area) + position_error(a, b, c, normal)},
-                    shape.origin);
+                const TriangleLight even{
+                    .corner = Vec3(a),
+                    .edge1 = Vec3(b - a),
+                    .edge2 = Vec3(c - a),
+                    .normal = normal,
+                    .emission = *shape.emission,
+                    .density = {static_cast<float>(1 / area)},
+                    .offset = intersection_error(a, b, c, twice_area) + position_error(a, b, c, normal)};
+                TypedIndex light;
+                if (emission_texture) {
+                    const TexturedTriangleLight textured(even, {uv(corners[0]), uv(corners[1]), uv(corners[2])},
+                                                         emission_texture);
+                    light = add_light(textured, shape.origin);
+                    mean_emission += textured.mean() * float(area);
+                } else {
+                    light = add_light(even, shape.origin);
+                }
                 if (emitter.light_count++ == 0) record.first_light = light;
                 centroid += (a + b + c) * (area / 3);
                 emitter.vector_area += normal * float(area);
@@ -243,6 +255,7 @@ private:
         if (shape.emission) {
             if (!(emitter.area > 0)) fail(shape.origin, "the light has no area");
             emitter.position = Vec3(centroid / double(emitter.area));
+            if (emission_texture) emitter.strength = mean_emission / emitter.area;
             pending_.push_back({record.first_light, emitter.light_count});
             data_.emitters.push_back(emitter);
         }

@@ -90,7 +90,9 @@ private:
             auto& list = std::get<kind>(data_.bsdfs);
             check_count(list.size(), MaterialIndex::max_position, origin, "surface models");
             list.emplace_back(material);
-            return MaterialIndex(kind, list.size() - 1, two_sided);
+            // Of smooth lobes only: mirrors and clear glass are not asked for light.
+            const bool lit_through = !model_of<M>::specular && transmits_light(material);
+            return MaterialIndex(kind, list.size() - 1, two_sided, lit_through);
         }
     }
 

@@ -142,6 +142,20 @@ void check_shapes(const SceneDescription<Material>& scene, const auto& shapes) {
         if (!shape.emission) continue;
         if (const std::string problem = radiance_problem(*shape.emission, "the light's radiance"); !problem.empty())
             fail(shape.origin, problem);
+        if (shape.emission_texture) {
+            if (std::holds_alternative<Sphere>(shape.geometry))
+                fail(shape.origin, "only meshes can have a texture for their radiance, and this is a sphere");
+            if (const std::string problem = shape.emission_texture->problem(); !problem.empty())
+                fail(shape.origin, problem);
+            if (const std::string problem =
+                    radiance_problem(*shape.emission * shape.emission_texture->least(), "the light's radiance");
+                !problem.empty())
+                fail(shape.origin, problem);
+            if (const std::string problem =
+                    radiance_problem(*shape.emission * shape.emission_texture->most(), "the light's radiance");
+                !problem.empty())
+                fail(shape.origin, problem);
+        }
         // Light would come from it with that probability when it is met, but always when it is sampled.
         if (is_masked(scene, shape.material)) fail(shape.origin, "a surface that shines cannot be masked");
     }

@@ -30,6 +30,7 @@ struct SceneDescription {
         std::size_t material = 0;     ///< index into `materials`
         std::optional<Rgb> emission;  ///< radiance that the front emits, W/(m^2 sr)
         Origin origin;
+        std::optional<Texture> emission_texture{};  ///< of a mesh: what `emission` is multiplied by, by place
     };
     struct NamedMaterial {
         Material bsdf;

@@ -109,7 +109,7 @@ bool resolve_layers(const auto& data, const Vec2& uv, SurfacePoint& point, Mappe
         // Under a two-sided layer that is seen from behind the map lies on the mirrored surface.
         const bool mirrored = two_sided && behind;
         point.shading_normal = mirrored ? normal - 2 * dot(normal, before) * before : normal;
-        two_sided = two_sided && !mirrored;
+        two_sided = false;
         map = {.active = true, .flips = layer.flips, .shadows = layer.shadows};
     };
     MaterialIndex next = point.material;
@@ -138,7 +138,12 @@ bool resolve_layers(const auto& data, const Vec2& uv, SurfacePoint& point, Mappe
         }
         two_sided = two_sided || next.two_sided();
     }
-    point.material = MaterialIndex(next.kind(), next.position(), two_sided);
+    if (map.active && two_sided) {  // below the map: which side is seen, the surface before the map says
+        if (behind) point.shading_normal = -point.shading_normal;
+        two_sided = false;
+    }
+    // A turned normal says little about where light comes from.
+    point.material = MaterialIndex(next.kind(), next.position(), two_sided, next.lit_through() || map.active);
     return true;
 }
 

@@ -177,7 +177,7 @@ public:
         return pdf * data().light_choice.probability(light_number(hit.light));
     }
 
-    /// The density with which `sample_light`, at a point whose `facing_normal()` is `normal`, chooses the direction
+    /// The density with which `sample_light`, at a point whose `lit_normal()` is `normal`, chooses the direction
     /// `wi` through the environment.
     SolidAnglePdf environment_pdf(const Vec3& normal, const Vec3& wi) const {
         if (data().light_choice.empty()) return {};
