@@ -46,8 +46,9 @@ struct PhongTerms {
 /// - `sample(wo, u, transport)`: a direction, or nothing when light is absorbed;
 /// - `problem()`: why the parameters are impossible, in words, or an empty string.
 ///
-/// Optionally `phong()` returns the `PhongTerms` that represent the model, and `static constexpr bool transmits = true`
-/// says that light gets through the surface.
+/// Optionally `phong()` returns the `PhongTerms` that represent the model, `albedo()` an `Rgb`, the surface's colour
+/// whatever the directions, 0 to 1 (without it that of `phong()`), and `static constexpr bool transmits = true` says
+/// that light gets through the surface.
 template <class B>
 concept Bsdf = requires(const B bsdf, const Vec3 direction, const Vec3 u, const Transport transport) {
     { B::specular } -> std::convertible_to<bool>;
