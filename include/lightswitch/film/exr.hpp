@@ -82,8 +82,9 @@ inline std::string plain_exr(const ExrLayout& layout) {
     return out;
 }
 
-/// Reads the channels R, G and B of a scan line file, or those of a layer (see `find_exr_channels`), 16 or 32 bits, uncompressed or RLE, ZIP, ZIPS, PIZ. Only ZIP and
-/// ZIPS carry a checksum: damage to the values themselves can pass unnoticed in the others.
+/// Reads the channels R, G and B of a scan line file, or those of a layer (`find_exr_channels`), 16 or 32 bits,
+/// uncompressed or RLE, ZIP, ZIPS, PIZ. Only ZIP and ZIPS carry a checksum: damage to the values themselves can pass
+/// unnoticed in the others.
 inline Image decode_exr(std::string_view bytes, const std::string& file, std::string_view layer = {}) {
     const Origin where = file_origin(file);
     const ExrLayout layout = read_exr_layout(bytes, file, layer);

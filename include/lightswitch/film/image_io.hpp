@@ -78,9 +78,9 @@ inline bool can_hold_layers(const std::filesystem::path& path) {
     return detail::image_format(path) == detail::ImageFormat::exr;
 }
 
-/// Writes the image and its layers, all of one size, as an .exr file: the image and its metadata as `save` does, so that
-/// `load_image` reads it, and the channels "name.C" for every letter C of a layer, as other programs know them. Throws
-/// `Error` like `save`, for another extension, and for layers that do not fit.
+/// Writes the image and its layers, all of one size, as an .exr file: image and metadata as `save` does, so that
+/// `load_image` reads them (up to 2^28 values in all), and the channels "name.C" for every letter C of a layer, as
+/// other programs know them. Throws `Error` like `save`, for another extension, and for layers that do not fit.
 inline void save_layers(const std::filesystem::path& path, const Image& image, std::span<const Layer> layers) {
     if (!can_hold_layers(path)) fail(detail::file_origin(path), "only .exr files hold layers");
     if (image.empty()) fail(detail::file_origin(path), "an image without pixels cannot be written");

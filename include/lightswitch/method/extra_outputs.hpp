@@ -1,8 +1,9 @@
 #pragma once
 
 // Extra outputs: what the camera's rays meet rather than how it is lit. Images to guide a denoiser, to composite and to
-// look at. Each is a method of its own; `render_outputs` renders several at once, by the camera rays that the image has.
+// look at. Each is a method of its own; `render_outputs` renders several at once, by the camera rays of the image.
 
+#include <lightswitch/bsdf/bsdf.hpp>
 #include <lightswitch/embree/accelerator.hpp>
 #include <lightswitch/film/layer.hpp>
 #include <lightswitch/geometry/render_space.hpp>
@@ -271,10 +272,10 @@ bool add_samples(const SceneType& scene, std::vector<OutputSums>& sums, int samp
 }  // namespace detail
 
 /// Renders outputs of a scene, of the size of its image: layers for `save_layers`, in the order given, each as
-/// `render(scene, output, {.samples = samples}, settings)` would make it, to the bit (but for values that are not finite
-/// in single precision, which are 0 and are not counted). A camera ray and the surface that it meets are found once for
-/// all of them. With the seed and sampling of an image, the rays are those of its first `samples` iterations: edges are
-/// filtered alike, as denoisers need it.
+/// `render(scene, output, {.samples = samples}, settings)` would make it, to the bit (but values that are not finite in
+/// single precision are not counted). A camera ray and the surface that it meets are found once for all of them. With
+/// the seed and sampling of an image, the rays are those of its first `samples` iterations: edges are filtered alike,
+/// as denoisers need it.
 ///
 /// 64 samples leave little noise: outputs have none but at edges and out of focus. The observer is called after each
 /// with an empty film. When `settings.stop` asks for an end there are no layers. Throws `Error` unless `samples` is at
