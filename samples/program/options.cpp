@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace lightswitch::program {
 namespace {
 
@@ -51,6 +53,25 @@ Sampling parse_sampling(std::string_view text) {
     throw Error(fmt::format("--sampler: there is no sampler \"{}\"; known are sobol, independent", text));
 }
 
+/// Names separated by commas; one that is there already is passed over.
+void add_extra_outputs(std::vector<ExtraOutput>& outputs, std::string_view text) {
+    static const std::vector<std::string_view> known = [] {
+        std::vector<std::string_view> names;
+        for (const ExtraOutput& output : extra_outputs()) names.push_back(output_name(output));
+        return names;
+    }();
+    while (true) {
+        const std::string_view name = text.substr(0, text.find(','));
+        if (std::find(known.begin(), known.end(), name) == known.end())
+            throw Error(fmt::format("--aov: there is no output \"{}\"{}; known are {}", name, suggestion(name, known),
+                                    list(known)));
+        if (std::none_of(outputs.begin(), outputs.end(), [&](const auto& o) { return output_name(o) == name; }))
+            outputs.push_back(output_by_name(name));
+        if (name.size() == text.size()) return;
+        text.remove_prefix(name.size() + 1);
+    }
+}
+
 int parse_max_depth(std::string_view text) {
     const int depth = parse_int("--max-depth", text, -1);
     if (depth == 0)
@@ -91,6 +112,10 @@ void add_render(CLI::App& app, RenderOptions& options) {
              "rendering method: " + list(known_methods) + "\n(default: path-nee; see \"lightswitch methods\")");
     add_outputs(app, options.outputs,
                 "image to write, by extension: .exr, .pfm, .hdr (linear) or .png\n(exposure, sRGB); may be repeated");
+    add_values(
+        app, "--aov", "LIST", [&](const std::string& text) { add_extra_outputs(options.extra, text); },
+        "what the camera sees beside light, as layers of the .exr files:\n" + output_names() +
+            ",\nseparated by commas");
     add_value(
         app, "--spp", "N", [&](const std::string& text) { options.budget.samples = parse_int("--spp", text, 1); },
         "samples per pixel (default: what the scene asks for, or 64)");
@@ -128,8 +153,13 @@ void add_render(CLI::App& app, RenderOptions& options) {
         "Of --spp, --seconds and --error the limit that is met first ends the render. Ctrl-C, SIGTERM and SIGHUP end\n"
         "it too: the image so far is written; a second Ctrl-C ends the program at once.\n\n"
         "Exit status: 0 done, 2 an error of which one line on standard error tells, 130 cancelled.\n\n"
+        "Layers (--aov) are the channels albedo.R .G .B, normal.X .Y .Z (shading normal, facing the viewer),\n"
+        "depth.Z (distance from the camera), position.X .Y .Z, shape.I and primitive.I (numbers from 1, of what the\n"
+        "pixel's centre sees). Albedo, which looks through mirrors and glass, and normal guide denoisers. They are\n"
+        "rendered before the image, by the same camera rays, 16 to 64 per pixel; 0 is where nothing is seen.\n\n"
         "Examples:\n"
         "  lightswitch render cornell-box --output box.png\n"
+        "  lightswitch render cornell-box --aov albedo,normal,depth --output box.exr\n"
         "  lightswitch render room.xml --method path --spp 256 --output room.exr --output room.png\n"
         "  lightswitch render room.xml --error 0.02 --seconds 60 --size 640x360 --output room.png\n"
         "  lightswitch render cornell-spheres --method photon --radius 3 --photon-paths 2 --output caustic.png\n"

@@ -43,9 +43,11 @@ void Outputs::refuse_inputs(const std::vector<std::filesystem::path>& inputs) co
                                         file == input ? "" : fmt::format(" (as {})", input.string())));
 }
 
-void write_image(const std::filesystem::path& file, const Image& image, const SaveOptions& options) {
+void write_image(const std::filesystem::path& file, const Image& image, const SaveOptions& options,
+                 const std::vector<Layer>& layers) {
     const Uninterrupted writing;
-    save(file, image, options);
+    if (!layers.empty() && can_hold_layers(file)) save_layers(file, image, layers);
+    else save(file, image, options);
 }
 
 void write_report(const std::filesystem::path& file, const Report& report) {

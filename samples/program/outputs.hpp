@@ -34,7 +34,9 @@ private:
 };
 
 // Each writes a file as a whole: a signal that comes meanwhile has its effect afterwards.
-void write_image(const std::filesystem::path& file, const Image& image, const SaveOptions& options = {});
+/// With the layers where the file can hold them.
+void write_image(const std::filesystem::path& file, const Image& image, const SaveOptions& options = {},
+                 const std::vector<Layer>& layers = {});
 void write_report(const std::filesystem::path& file, const Report& report);
 /// "-" is standard output.
 void write_text(const std::filesystem::path& file, const std::string& text);

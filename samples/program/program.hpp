@@ -3,6 +3,7 @@
 // The sub-commands of the program `lightswitch`, and what the command line says to them.
 
 #include <lightswitch/film/filter.hpp>
+#include <lightswitch/method/extra_outputs.hpp>
 #include <lightswitch/render/render.hpp>
 #include <lightswitch/scene/build.hpp>
 #include <lightswitch/verify/verify.hpp>
@@ -49,8 +50,9 @@ struct RenderOptions {
     std::string method = "path-nee";
     MethodOptions of_method;
     std::vector<std::filesystem::path> outputs;
-    std::string stats;  ///< a file, "-" for standard output, or empty
-    Budget budget;      ///< without any limit: what the scene says, or 64 samples
+    std::vector<ExtraOutput> extra;  ///< layers of the outputs that can hold them; no two of one name
+    std::string stats;               ///< a file, "-" for standard output, or empty
+    Budget budget;                   ///< without any limit: what the scene says, or 64 samples
     std::optional<int> max_depth, rr_depth;
     std::uint64_t seed = 0;
     int threads = 0;

@@ -50,4 +50,9 @@ void ProgressLine::clear() {
     dirty_ = false;
 }
 
+void ProgressLine::restart() {
+    clear();
+    next_ = 0;
+}
+
 }  // namespace lightswitch::program

@@ -19,6 +19,8 @@ public:
     /// Any text, after so many seconds of work.
     void update(double seconds, const std::string& text);
     void clear();
+    /// Clears it, for other work whose seconds count from 0.
+    void restart();
 
 private:
     bool shown_, dirty_ = false;

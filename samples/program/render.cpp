@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace lightswitch::program {
@@ -22,6 +23,8 @@ Outputs checked_outputs(const RenderOptions& options) {
     Outputs outputs;
     for (const auto& output : options.outputs) outputs.add_image("--output", output);
     outputs.add_text("--stats", options.stats);
+    if (!options.extra.empty() && std::none_of(options.outputs.begin(), options.outputs.end(), can_hold_layers))
+        throw Error("--aov: only .exr files hold layers: name one with --output");
     return outputs;
 }
 
@@ -44,6 +47,26 @@ Budget budget(const RenderOptions& options, const SceneSummary& summary) {
     Budget result = options.budget;
     if (result.samples == 0 && result.seconds == 0 && result.error == 0) result.samples = summary.samples.value_or(64);
     return result;
+}
+
+/// The extra outputs, if any, with as many samples as the image, within limits: with fewer they would be noisy guides,
+/// and more show nothing new.
+std::vector<Layer> render_extra(const RenderOptions& options, const LoadedScene& loaded, const Budget& limits,
+                                const Cancellation& cancellation, ProgressLine& line) {
+    if (options.extra.empty()) return {};
+    const int samples = limits.samples == 0 ? 64 : std::clamp(limits.samples, 16, 64);
+    const auto tell = [&](const Progress& progress) {
+        line.update(progress.seconds,
+                    fmt::format("{:3.0f} %  extra outputs, before the image", 100 * progress.fraction));
+    };
+    std::vector<Layer> layers = run_outputs(loaded.scene, options.extra, samples,
+                                            {.seed = options.seed,
+                                             .threads = options.threads,
+                                             .sampling = options.sampling,
+                                             .stop = cancellation.token(),
+                                             .observer = tell});
+    line.restart();
+    return layers;
 }
 
 std::string summary_line(const AnyMethod& method, const Rendered& rendered, const RenderOptions& options) {
@@ -77,6 +100,7 @@ int render(const RenderOptions& options) {
     const Budget limits = budget(options, loaded.summary);
     const bool error_alone = limits.samples == 0 && limits.seconds == 0;
     bool stays_black = false;
+    const std::vector<Layer> layers = render_extra(options, loaded, limits, cancellation, line);
     const Job job{.budget = limits,
                   .settings = {.seed = options.seed,
                                .threads = options.threads,
@@ -101,7 +125,8 @@ int render(const RenderOptions& options) {
         return Status::cancelled;
     }
     warn_about_values(statistics.counts, rendered.image);
-    for (const auto& output : options.outputs) write_image(output, rendered.image, {.exposure = options.exposure});
+    for (const auto& output : options.outputs)
+        write_image(output, rendered.image, {.exposure = options.exposure}, layers);
     if (!options.stats.empty()) write_text(options.stats, statistics_json(loaded.scene, method, options, rendered));
     // Whoever reads the statistics from standard output wants nothing else there.
     if (!options.quiet)

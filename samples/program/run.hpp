@@ -4,6 +4,7 @@
 // and the rest of the program never sees the loop.
 
 #include <lightswitch/method/any_method.hpp>
+#include <lightswitch/method/extra_outputs.hpp>
 #include <lightswitch/render/render.hpp>
 #include <lightswitch/scene/any_scene.hpp>
 #include <lightswitch/verify/estimator.hpp>
@@ -30,6 +31,10 @@ struct Rendered {
 /// Renders until the budget is spent or the stop token asks for an end.
 template <class M>
 Rendered run(const AnyScene& scene, const M& method, const Job& job);
+
+/// Renders extra outputs; none when the stop token asks for an end.
+std::vector<Layer> run_outputs(const AnyScene& scene, const std::vector<ExtraOutput>& outputs, int samples,
+                               const Settings& settings);
 
 /// The method on the scene as a side of `verify`. The scene must outlive it.
 template <class M>

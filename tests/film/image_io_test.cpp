@@ -368,6 +368,53 @@ TEST_CASE("exr: damaged files give an image or an error") {
     check_survives_damage(bytes_of(half_plain), 1000, 3, decode);
 }
 
+TEST_CASE("exr: layers, beside the image") {
+    const Scratch scratch;
+    const fs::path path = scratch.path / "a.exr";
+    Image image = test_image(9, 20, true);
+    image.metadata = {{"scene", "room.xml"}};
+    Image other(9, 20), third(9, 20);
+    for (std::size_t i = 0; i < other.pixels().size(); ++i) {
+        other.pixels()[i] = Rgb(static_cast<float>(i), -0.1f, 1e30f);
+        third.pixels()[i] = Rgb(0.3f * static_cast<float>(i), 7, 8);
+    }
+    const std::string longest(200, 'n');
+    const std::vector<Layer> layers{
+        {"normal", "XYZ", other}, {"Albedo", "RGB", third}, {"depth", "Z", third}, {longest, "I", other}};
+    save_layers(path, image, layers);
+    const Image back = load_image(path);
+    CHECK(same_bits(back, image));
+    CHECK(back.metadata == image.metadata);
+    CHECK(same_bits(load_layer(path, "normal"), other));
+    CHECK(same_bits(load_layer(path, "Albedo"), third));
+    for (Rgb& p : third.pixels()) p = Rgb(p.x);
+    CHECK(same_bits(load_layer(path, "depth"), third));
+    for (Rgb& p : other.pixels()) p = Rgb(p.x);
+    CHECK(same_bits(load_layer(path, longest), other));
+    // Without layers it is the file that `save` writes.
+    save_layers(path, image, {});
+    CHECK(read_file(path, 1 << 20) == detail::encode_exr(image, "x.exr"));
+}
+
+TEST_CASE("exr: layers that do not fit, and files that have none") {
+    const Scratch scratch;
+    const Image image(4, 3);
+    const auto refusal = [&](const std::vector<Layer>& layers) {
+        return message_of([&] { save_layers(scratch.path / "a.exr", image, layers); });
+    };
+    CHECK(contains(refusal({{"", "RGB", image}}), "a.exr: the layer '' needs another name"));
+    CHECK(contains(refusal({{std::string(201, 'n'), "I", image}}), "needs another name"));
+    CHECK(contains(refusal({{"depth", "", image}}), "the layer 'depth' must have one to three channels"));
+    CHECK(contains(refusal({{"depth", "RGBA", image}}), "one to three channels"));
+    CHECK(contains(refusal({{"depth", "Z", Image(3, 4)}}), "the layer 'depth' has not the size of the image"));
+    CHECK(contains(refusal({{"a", "Z", image}, {"a", "YZ", image}}), "the channel a.Z twice"));
+    CHECK(scratch.files() == 0);
+    save(scratch.path / "b.exr", image);
+    CHECK(contains(message_of([&] { load_layer(scratch.path / "b.exr", "depth"); }),
+                   "b.exr: has no layer 'depth' (it has: B, G, R)"));
+    CHECK(contains(message_of([&] { load_layer(scratch.path / "b.exr", ""); }), "has no name"));
+}
+
 #else
 
 TEST_CASE("exr: a build without it says so before the work begins") {
@@ -385,6 +432,16 @@ TEST_CASE("pfm and hdr: damaged files give an image or an error") {
                           [](const std::string& bytes) { detail::decode_pfm(bytes, "x.pfm"); });
     check_survives_damage(detail::encode_rgbe(test_image(20, 4, false)), 1000, 5,
                           [](const std::string& bytes) { detail::decode_rgbe(bytes, "x.hdr"); });
+}
+
+TEST_CASE("layers are for .exr files alone") {
+    const Scratch scratch;
+    const Image image(2, 2);
+    CHECK(can_hold_layers("a.EXR"));
+    CHECK_FALSE(can_hold_layers("a.pfm"));
+    CHECK(contains(message_of([&] { save_layers(scratch.path / "a.pfm", image, {}); }), "only .exr files hold layers"));
+    CHECK(contains(message_of([&] { load_layer(scratch.path / "a.pfm", "depth"); }), "only .exr files hold layers"));
+    CHECK(scratch.files() == 0);
 }
 
 TEST_CASE("image files: the extension chooses the format, in either case") {

@@ -39,6 +39,18 @@ TEST_CASE("render space: scaling by a power of two and moving exactly change no 
     CHECK(RenderSpace(low + far, high + far).point(p + far) == RenderSpace(low, high).point(p));
 }
 
+TEST_CASE("render space: there and back") {
+    const DVec3 p(0.3, 7.7, 4.1);
+    for (const double shift : {0.0, 1e6})
+        for (const int k : {-300, 0, 20}) {
+            const double s = std::ldexp(1.0, k);
+            const RenderSpace space(DVec3(-1 + shift, 0, 3) * s, DVec3(5 + shift, 9, 5) * s);
+            const DVec3 there = (p + DVec3(shift, 0, 0)) * s;
+            CHECK(glm::length(space.scene_point(space.point(there)) - there) <= 2e-16 * glm::length(there));
+            CHECK(space.scene_length(space.length(0.7)) == 0.7);
+        }
+}
+
 TEST_CASE("render space: extremes") {
     // One point, or nothing: scale 1, recentred.
     const RenderSpace one(DVec3(5, 6, 7), DVec3(5, 6, 7));

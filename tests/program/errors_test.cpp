@@ -107,6 +107,22 @@ TEST_CASE("render: outputs that cannot be written") {
                   });
 }
 
+TEST_CASE("render: layers that do not exist or have no place") {
+    const Workspace workspace;
+    check_refused(workspace,
+                  {
+                      {render({"--aov", "colour"}),
+                       "--aov: there is no output \"colour\"; known are albedo, normal, depth, position, shape"},
+                      {render({"--aov", "albedo,nomal"}), "did you mean \"normal\"?"},
+                      {render({"--aov", "albedo,"}), "there is no output \"\""},
+                      {render({"--aov", ""}), "there is no output \"\""},
+                      {render({"--aov"}), "--aov needs a value"},
+                      // Found out before the work, which would take for ever.
+                      {render({"--aov", "albedo", "--spp", "2147483647"}), "--aov: only .exr files hold layers"},
+                      {{"render", "furnace", "--aov", "depth", "--stats", "-"}, "--aov: only .exr files hold layers"},
+                  });
+}
+
 TEST_CASE("render: values out of range") {
     const Workspace workspace;
     check_refused(workspace, {

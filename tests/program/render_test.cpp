@@ -87,6 +87,41 @@ TEST_CASE("the image depends on the seed and the sampler, and not on the number 
     CHECK(image != bytes({"--method", "path"}));
 }
 
+TEST_CASE("--aov: layers beside the same image") {
+    if (!lightswitch::detail::has_exr) return;
+    const Workspace workspace;
+    workspace.write("room.xml", small_scene("<emitter type=\"constant\"/>"));
+    const auto render = [&](std::vector<std::string> more) {
+        std::vector<std::string> words{"render", "room.xml", "-D", "spp=4", "-o", "x.exr", "-o", "x.pfm"};
+        words.insert(words.end(), more.begin(), more.end());
+        const Ended ended = run(workspace, words);
+        CHECK(ended.status == 0);
+        CHECK(ended.err == "");
+        return lightswitch::load_image(workspace / "x.exr");
+    };
+    const lightswitch::Image plain = render({});
+    const lightswitch::Image image =
+        render({"--aov", "albedo,depth,albedo", "--aov=normal,position", "--threads", "1"});
+    CHECK(image.pixels() == plain.pixels());
+    CHECK(image.pixels() == lightswitch::load_image(workspace / "x.pfm").pixels());
+    CHECK(image.metadata.at("method") == "path-nee");
+    CHECK(lightswitch::load_layer(workspace / "x.exr", "albedo")(3, 3) == lightswitch::Rgb(0.5f));
+    CHECK(lightswitch::load_layer(workspace / "x.exr", "normal")(3, 3) == lightswitch::Rgb(0, 0, 1));
+    const double depth = lightswitch::load_layer(workspace / "x.exr", "depth").mean().x;
+    CHECK(depth == relative(1.025, 0.02));  // from 1 in the middle to 1.1 in the corners
+    CHECK(lightswitch::load_layer(workspace / "x.exr", "position").mean().z == relative(0, 0).or_absolute(1e-6));
+    CHECK_THROWS_AS(lightswitch::load_layer(workspace / "x.exr", "shape"), lightswitch::Error);
+    const Ended compared = run(workspace, {"compare", "x.exr", "x.pfm"});
+    CHECK(compared.status == 0);
+    CHECK(compared.prints("RMSE        0\n"));
+
+    std::filesystem::rename(workspace / "x.exr", workspace / "one.exr");
+    render({"--aov", "position,depth,normal,albedo", "--threads", "3"});
+    for (const char* name : {"albedo", "depth", "normal", "position"})
+        CHECK(lightswitch::load_layer(workspace / "x.exr", name).pixels() ==
+              lightswitch::load_layer(workspace / "one.exr", name).pixels());
+}
+
 TEST_CASE("the depth of paths is that of the command line") {
     // In the furnace every surface emits 1 and reflects half: depth d shows the first d terms of 1 + 1/2 + 1/4 + ...
     const Workspace workspace;

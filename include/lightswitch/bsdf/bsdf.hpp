@@ -55,6 +55,7 @@ struct PhongTerms {
 ///
 /// Optionally
 /// - `phong()` returns the `PhongTerms` that represent the model;
+/// - `albedo()` an `Rgb`, the surface's colour whatever the directions, 0 to 1 (without it that of `phong()`);
 /// - `static constexpr bool transmits = true` says that light gets through the surface;
 /// - `static constexpr bool partly_specular = true` says that some lobes are Dirac distributions, but not all;
 /// - `transmits_light()` is false where light does not get through with the parameters at hand;

@@ -28,6 +28,9 @@ struct CameraView {
 /// - `width()`, `height()`: of the film in pixels.
 ///
 /// A pixel's value is the mean of the radiance along its rays.
+///
+/// Optionally `double start(const Ray& ray) const` says how far from the lens (or, where rays are parallel, from the
+/// plane of the camera) a ray of its own begins, for those that do not begin there.
 template <class C>
 concept Camera = requires(const C camera, const Vec2 u) {
     { camera.ray(u, u) } -> std::same_as<Ray>;
@@ -77,6 +80,10 @@ public:
 
     Ray ray(const Vec2& pixel, const Vec2& lens) const {
         return with([&](const auto& camera) { return camera.ray(pixel, lens); });
+    }
+    double start(const Ray& ray) const requires requires(const C&... camera) { (camera.start(ray), ...); }
+    {
+        return with([&](const auto& camera) { return camera.start(ray); });
     }
     bool has_lens() const {
         return with([](const auto& camera) { return camera.has_lens(); });

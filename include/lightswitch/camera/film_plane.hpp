@@ -52,6 +52,11 @@ struct CameraBody {
 
     bool has_lens() const { return lens_radius > 0; }
 
+    /// How far from the lens, along a ray of this camera, the ray begins.
+    double start(const Ray& ray) const {
+        return glm::dot(DVec3(ray.origin) - position, forward) / glm::dot(DVec3(ray.direction), forward);
+    }
+
     /// The ray through a place of the lens whose companion through its centre leaves `origin` along `along`, which is 1
     /// long along the axis.
     Ray ray(DVec3 origin, DVec3 along, const Vec2& lens) const {

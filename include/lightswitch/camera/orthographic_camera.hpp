@@ -39,6 +39,7 @@ public:
         return 1 / (plane_.pixel_area * std::abs(glm::dot(DVec3(direction), body_.forward)));
     }
 
+    double start(const Ray& ray) const { return body_.start(ray); }
     bool has_lens() const { return body_.has_lens(); }
     int width() const { return plane_.width; }
     int height() const { return plane_.height; }

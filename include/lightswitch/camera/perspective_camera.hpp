@@ -62,6 +62,7 @@ public:
         return 1 / (plane_.pixel_area * cosine * depth * depth);
     }
 
+    double start(const Ray& ray) const { return body_.start(ray); }
     bool has_lens() const { return body_.has_lens(); }
     int width() const { return plane_.width; }
     int height() const { return plane_.height; }

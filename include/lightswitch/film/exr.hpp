@@ -3,18 +3,21 @@
 // OpenEXR images, through tinyexr where the build has it (LIGHTSWITCH_HAS_EXR is 1 and tinyexr is linked).
 
 #include <lightswitch/film/exr_layout.hpp>
+#include <lightswitch/film/layer.hpp>
 
+#include <span>
 #include <string>
 #include <string_view>
 
 #if LIGHTSWITCH_HAS_EXR
 #include <tinyexr.h>
 
-#include <array>
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
+#include <utility>
 #include <vector>
 #endif
 
@@ -79,11 +82,12 @@ inline std::string plain_exr(const ExrLayout& layout) {
     return out;
 }
 
-/// Reads the channels R, G and B of a scan line file, 16 or 32 bits, uncompressed or RLE, ZIP, ZIPS, PIZ. Only ZIP and
-/// ZIPS carry a checksum: damage to the values themselves can pass unnoticed in the others.
-inline Image decode_exr(std::string_view bytes, const std::string& file) {
+/// Reads the channels R, G and B of a scan line file, or those of a layer (`find_exr_channels`), 16 or 32 bits,
+/// uncompressed or RLE, ZIP, ZIPS, PIZ. Only ZIP and ZIPS carry a checksum: damage to the values themselves can pass
+/// unnoticed in the others.
+inline Image decode_exr(std::string_view bytes, const std::string& file, std::string_view layer = {}) {
     const Origin where = file_origin(file);
-    const ExrLayout layout = read_exr_layout(bytes, file);
+    const ExrLayout layout = read_exr_layout(bytes, file, layer);
     std::string plain = plain_exr(layout);
     const std::size_t size = plain.size();
     plain.append(64, '\0');  // tinyexr's Huffman decoder looks past the end of damaged chunks
@@ -119,8 +123,7 @@ inline Image decode_exr(std::string_view bytes, const std::string& file) {
 
     Image image(layout.width, layout.height);
     for (int c = 0; c < 3; ++c) {
-        const char* names[] = {"R", "G", "B"};
-        const unsigned char* plane = exr.image.images[layout.channel(names[c])];
+        const unsigned char* plane = exr.image.images[layout.rgb[static_cast<std::size_t>(c)]];
         for (Rgb& pixel : image.pixels()) {
             std::memcpy(&pixel[c], plane, sizeof(float));
             plane += sizeof(float);
@@ -130,23 +133,56 @@ inline Image decode_exr(std::string_view bytes, const std::string& file) {
     return image;
 }
 
-/// The image as 32-bit floats B, G, R, ZIP compressed; metadata as string attributes. Bit-exact.
-inline std::string encode_exr(const Image& image, const std::string& file) {
+/// One channel of a file that is written.
+struct ExrPlane {
+    std::string name;
+    std::vector<float> values;
+
+    ExrPlane(std::string plane_name, const Image& image, int component) : name(std::move(plane_name)) {
+        values.reserve(image.pixels().size());
+        for (const Rgb& pixel : image.pixels()) values.push_back(pixel[component]);
+    }
+};
+
+/// All channels of the image and its layers, by name, as the format has them.
+inline std::vector<ExrPlane> exr_planes(const Image& image, std::span<const Layer> layers, const Origin& where) {
+    std::vector<ExrPlane> planes;
+    for (int c = 0; c < 3; ++c) planes.emplace_back(std::string(1, "RGB"[c]), image, c);
+    for (const Layer& layer : layers) {
+        const auto refuse = [&](const std::string& why) {
+            fail(where, "the layer '" + layer.name.substr(0, 40) + "' " + why);
+        };
+        if (layer.name.empty() || layer.name.size() > 200 || layer.name.find('\0') != std::string::npos)
+            refuse("needs another name");
+        if (layer.channels.empty() || layer.channels.size() > 3) refuse("must have one to three channels");
+        if (layer.image.width() != image.width() || layer.image.height() != image.height())
+            refuse("has not the size of the image");
+        for (std::size_t c = 0; c < layer.channels.size(); ++c)
+            planes.emplace_back(layer.name + '.' + layer.channels[c], layer.image, static_cast<int>(c));
+    }
+    std::sort(planes.begin(), planes.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
+    const auto same = [](const ExrPlane& a, const ExrPlane& b) { return a.name == b.name; };
+    const auto twice = std::adjacent_find(planes.begin(), planes.end(), same);
+    if (twice != planes.end()) fail(where, "would have the channel " + twice->name + " twice");
+    return planes;
+}
+
+/// The image as 32-bit floats B, G, R, and its layers likewise, ZIP compressed; metadata as string attributes.
+/// Bit-exact.
+inline std::string encode_exr(const Image& image, const std::string& file, std::span<const Layer> layers = {}) {
     const Origin where = file_origin(file);
-    const std::size_t count = image.pixels().size();
-    std::array<std::vector<float>, 3> planes;
-    std::array<unsigned char*, 3> plane_pointers{};
-    std::array<EXRChannelInfo, 3> channels{};
-    std::array<int, 3> types{TINYEXR_PIXELTYPE_FLOAT, TINYEXR_PIXELTYPE_FLOAT, TINYEXR_PIXELTYPE_FLOAT};
-    for (std::size_t c = 0; c < 3; ++c) {
-        planes[c].resize(count);
-        for (std::size_t i = 0; i < count; ++i) planes[c][i] = image.pixels()[i][static_cast<int>(2 - c)];
-        plane_pointers[c] = reinterpret_cast<unsigned char*>(planes[c].data());
-        channels[c].name[0] = "BGR"[c];
+    std::vector<ExrPlane> planes = exr_planes(image, layers, where);
+    std::vector<unsigned char*> plane_pointers;
+    std::vector<EXRChannelInfo> channels(planes.size());
+    std::vector<int> types(planes.size(), TINYEXR_PIXELTYPE_FLOAT);
+    bool long_names = false;
+    for (std::size_t c = 0; c < planes.size(); ++c) {
+        plane_pointers.push_back(reinterpret_cast<unsigned char*>(planes[c].values.data()));
+        planes[c].name.copy(channels[c].name, sizeof channels[c].name - 1);
+        long_names = long_names || planes[c].name.size() > 31;
     }
 
     std::vector<EXRAttribute> attributes;
-    bool long_names = false;
     for (const auto& [key, value] : image.metadata) {
         const std::string name = std::string(exr_prefix) + key;
         EXRAttribute attribute{};
@@ -162,7 +198,7 @@ inline std::string encode_exr(const Image& image, const std::string& file) {
 
     EXRHeader header;
     InitEXRHeader(&header);
-    header.num_channels = 3;
+    header.num_channels = static_cast<int>(planes.size());
     header.channels = channels.data();
     header.pixel_types = types.data();
     header.requested_pixel_types = types.data();
@@ -171,7 +207,7 @@ inline std::string encode_exr(const Image& image, const std::string& file) {
     header.custom_attributes = attributes.data();
     EXRImage pixels;
     InitEXRImage(&pixels);
-    pixels.num_channels = 3;
+    pixels.num_channels = static_cast<int>(planes.size());
     pixels.images = plane_pointers.data();
     pixels.width = image.width();
     pixels.height = image.height();
@@ -189,11 +225,11 @@ inline std::string encode_exr(const Image& image, const std::string& file) {
 
 inline constexpr bool has_exr = false;
 
-[[noreturn]] inline Image decode_exr(std::string_view, const std::string& file) {
+[[noreturn]] inline Image decode_exr(std::string_view, const std::string& file, std::string_view = {}) {
     fail(file_origin(file), "this program was built without OpenEXR: build it with tinyexr, or use .pfm");
 }
 
-[[noreturn]] inline std::string encode_exr(const Image&, const std::string& file) {
+[[noreturn]] inline std::string encode_exr(const Image&, const std::string& file, std::span<const Layer> = {}) {
     fail(file_origin(file), "this program was built without OpenEXR: build it with tinyexr, or use .pfm");
 }
 

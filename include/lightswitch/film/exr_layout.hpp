@@ -29,6 +29,7 @@ struct ExrLayout {
     int compression = -1;                  ///< 0 none, 1 RLE, 2 ZIPS, 3 ZIP, 4 PIZ
     int width = 0, height = 0;             ///< of the data window
     std::vector<std::string_view> chunks;  ///< by row from the top, each `rows_per_chunk()` high but the last
+    std::array<int, 3> rgb{};              ///< positions of the channels that were asked for
     Image::Metadata metadata;
 
     int rows_per_chunk() const { return compression == 3 ? 16 : compression == 4 ? 32 : 1; }
@@ -60,17 +61,36 @@ inline void read_exr_channels(ByteReader reader, ExrLayout& layout) {
     }
 }
 
-inline void check_exr_channels(const Origin& where, const ExrLayout& layout) {
-    for (const char* name : {"R", "G", "B"}) {
-        const int i = layout.channel(name);
-        if (i < 0) {
-            std::string names;
-            for (const ExrChannel& c : layout.channels) names += (names.empty() ? "" : ", ") + c.name;
-            fail(where, "has no channels R, G and B (it has: " + names.substr(0, 200) + ")");
+/// The positions of R, G and B, or of a layer's R, G and B, or X, Y and Z, or its only channel three times. Throws
+/// `Error` when there are none, or when they hold integers.
+inline std::array<int, 3> find_exr_channels(const Origin& where, const ExrLayout& layout, std::string_view layer) {
+    const std::string prefix = layer.empty() ? std::string() : std::string(layer) + ".";
+    const auto all_of = [&](const std::array<const char*, 3>& names) {
+        return std::array{layout.channel(prefix + names[0]), layout.channel(prefix + names[1]),
+                          layout.channel(prefix + names[2])};
+    };
+    const auto complete = [](const std::array<int, 3>& found) {
+        return *std::min_element(begin(found), end(found)) >= 0;
+    };
+    std::array<int, 3> found = all_of({"R", "G", "B"});
+    if (!layer.empty() && !complete(found)) {
+        found = all_of({"X", "Y", "Z"});
+        const auto belongs = [&](const ExrChannel& c) { return c.name.starts_with(prefix); };
+        if (!complete(found) && std::count_if(layout.channels.begin(), layout.channels.end(), belongs) == 1) {
+            const auto only = std::find_if(layout.channels.begin(), layout.channels.end(), belongs);
+            found.fill(static_cast<int>(only - layout.channels.begin()));
         }
+    }
+    if (!complete(found)) {
+        std::string names;
+        for (const ExrChannel& c : layout.channels) names += (names.empty() ? "" : ", ") + c.name;
+        fail(where, (layer.empty() ? "has no channels R, G and B" : "has no layer '" + std::string(layer) + "'") +
+                        " (it has: " + names.substr(0, 200) + ")");
+    }
+    for (const int i : found)
         if (layout.channels[static_cast<std::size_t>(i)].type == ExrType::uint32)
             fail(where, "has integer colour channels; 16 or 32-bit floating point is needed");
-    }
+    return found;
 }
 
 /// The fields in a PIZ chunk by which a decoder finds its way: a bitmap of the values in use, then Huffman data.
@@ -117,8 +137,8 @@ inline void read_exr_chunks(ByteReader& reader, ExrLayout& layout, long long top
 
 /// Takes an OpenEXR file apart; the views point into `bytes`. The image is the data window; the display window is not
 /// looked at. Throws `Error` for damage and for whatever is not a plain RGB image: deep, tiled, multi-part,
-/// subsampled, without R, G and B, or compressed with loss.
-inline ExrLayout read_exr_layout(std::string_view bytes, const std::string& file) {
+/// subsampled, without R, G and B (or without that layer), or compressed with loss.
+inline ExrLayout read_exr_layout(std::string_view bytes, const std::string& file, std::string_view layer = {}) {
     ByteReader reader(bytes, file);
     const Origin& where = reader.where();
     if (bytes.substr(0, 4) != exr_magic) fail(where, "is not an OpenEXR file");
@@ -150,7 +170,7 @@ inline ExrLayout read_exr_layout(std::string_view bytes, const std::string& file
     check_size(where, width, height);
     layout.width = static_cast<int>(width);
     layout.height = static_cast<int>(height);
-    check_exr_channels(where, layout);
+    layout.rgb = find_exr_channels(where, layout, layer);
     if (width * height * static_cast<long long>(layout.channels.size()) > 4 * Image::max_area)
         fail(where, "has too many channels for its size");
     constexpr std::array lossy{"PXR24", "B44", "B44A", "DWAA", "DWAB"};

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <span>
 #include <string>
 
 namespace lightswitch {
@@ -35,6 +36,8 @@ inline ImageFormat image_format(const std::filesystem::path& path) {
     const std::string found = extension.empty() ? "has no extension" : "has the extension '" + extension + "'";
     fail(file_origin(path), found + "; an image is one of .exr, .hdr, .pfm, .png");
 }
+
+inline constexpr std::uintmax_t max_image_bytes = 16 * Image::max_area + (1 << 24);  // four floats per pixel, a header
 
 }  // namespace detail
 
@@ -70,22 +73,43 @@ inline void save(const std::filesystem::path& path, const Image& image, const Sa
     }
 }
 
+/// Whether a file of that name can hold layers: those of .exr can.
+inline bool can_hold_layers(const std::filesystem::path& path) {
+    return detail::image_format(path) == detail::ImageFormat::exr;
+}
+
+/// Writes the image and its layers, all of one size, as an .exr file: image and metadata as `save` does, so that
+/// `load_image` reads them (up to 2^28 values in all), and the channels "name.C" for every letter C of a layer, as
+/// other programs know them. Throws `Error` like `save`, for another extension, and for layers that do not fit.
+inline void save_layers(const std::filesystem::path& path, const Image& image, std::span<const Layer> layers) {
+    if (!can_hold_layers(path)) fail(detail::file_origin(path), "only .exr files hold layers");
+    if (image.empty()) fail(detail::file_origin(path), "an image without pixels cannot be written");
+    detail::check_output_name(detail::resolve_output(path));
+    write_file_atomically(path, detail::encode_exr(image, path.string(), layers));
+}
+
 /// Reads a linear image: .exr (scan lines; R, G, B of 16 or 32 bits; uncompressed, RLE, ZIP, ZIPS or PIZ), .hdr, .pfm.
 ///
 /// Other channels are ignored; metadata written by `save` come back. Takes memory in proportion to the file. Throws
 /// `Error` when the file is missing, damaged, or of a kind that is not read (.png is not: it is no longer linear).
 inline Image load_image(const std::filesystem::path& path) {
-    const std::string name = path.string();
     const detail::ImageFormat format = detail::image_format(path);
     if (format == detail::ImageFormat::png)
         fail(detail::file_origin(path), "PNG is not read: it holds tone mapped values; use .exr, .hdr or .pfm");
-    constexpr std::uintmax_t max_bytes = 16 * Image::max_area + (1 << 24);  // four floats per pixel, and a header
-    const std::string bytes = read_file(path, max_bytes);
+    const std::string bytes = read_file(path, detail::max_image_bytes);
     switch (format) {
-        case detail::ImageFormat::exr: return detail::decode_exr(bytes, name);
-        case detail::ImageFormat::hdr: return detail::decode_rgbe(bytes, name);
-        default: return detail::decode_pfm(bytes, name);
+        case detail::ImageFormat::exr: return detail::decode_exr(bytes, path.string());
+        case detail::ImageFormat::hdr: return detail::decode_rgbe(bytes, path.string());
+        default: return detail::decode_pfm(bytes, path.string());
     }
+}
+
+/// Reads a layer of an .exr file: its channels R, G and B, or X, Y and Z, or, as grey, its only one. Throws `Error` as
+/// `load_image` does, and when there is no such layer.
+inline Image load_layer(const std::filesystem::path& path, const std::string& name) {
+    if (!can_hold_layers(path)) fail(detail::file_origin(path), "only .exr files hold layers");
+    if (name.empty()) fail(detail::file_origin(path), "the layer to read has no name");
+    return detail::decode_exr(read_file(path, detail::max_image_bytes), path.string(), name);
 }
 
 }  // namespace lightswitch

@@ -25,6 +25,10 @@ public:
 
     DVec3 point(const DVec3& p) const { return (p - center_) * scale_; }
     double length(double scene_units) const { return scene_units * scale_; }
+    /// The inverse of `point`: where a point of render space lies in the scene.
+    DVec3 scene_point(const DVec3& p) const { return p / scale_ + center_; }
+    /// The inverse of `length`.
+    double scene_length(double render_units) const { return render_units / scale_; }
     /// Render units per scene unit, a power of two.
     double scale() const { return scale_; }
     const DVec3& center() const { return center_; }
