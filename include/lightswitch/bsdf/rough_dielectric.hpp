@@ -49,8 +49,8 @@ struct RoughDielectric {
         if (!(o > 0 && i > 0 && normal.z * wo.z > 0)) return {};
         const float inverse_length = 1 / std::sqrt(squared);
         const float cos_o = std::min(o * inverse_length, 1.0f), cos_i = i * inverse_length;
-        const float refracted = 1 - fresnel_dielectric(cos_o, relative).reflectance;
-        const float scattered = 4 * refracted * facets.distribution(normal) * masking * cos_o * cos_i / squared;
+        const float scattered = 4 * refracted(cos_o, relative * cos_i, relative) * facets.distribution(normal) *
+                                masking * cos_o * cos_i / squared;
         const float relative_squared = relative * relative;
         return {transmittance * (transport == Transport::radiance ? scattered : scattered * relative_squared),
                 {0.5f * scattered * relative_squared * facets.smith_denominator(upward(wi))}};
@@ -101,6 +101,12 @@ struct RoughDielectric {
     }
 
 private:
+    /// 1 - Fresnel's reflectance, without cancellation, for a cosine and q = eta times the cosine of refraction.
+    static float refracted(float c, float q, float eta) {
+        const float dense = eta * eta;
+        return 2 * c * q * (1 / square(c + q) + dense / square(dense * c + q));
+    }
+
     static Vec3 upward(const Vec3& w) { return {w.x, w.y, std::abs(w.z)}; }
 };
 
