@@ -81,7 +81,7 @@ private:
         return add(std::move(map), element.origin());
     }
 
-    std::size_t add(Layer layer, const Origin& origin) {
+    std::size_t add(MaterialLayer layer, const Origin& origin) {
         if (const std::string problem = layer_problem(layer); !problem.empty()) fail(origin, problem);
         return scene_.add(std::move(layer), origin);
     }

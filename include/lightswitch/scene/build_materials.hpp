@@ -46,7 +46,7 @@ private:
 
     void add_layer(const auto& description, std::size_t number) {
         const auto& material = description.materials[number];
-        const Layer& layer = *material.layer;
+        const MaterialLayer& layer = *material.layer;
         if (!placed)
             fail(material.origin,
                  "this scene type has no place for layers of materials; put a Textured<...> into the scene's "
@@ -58,7 +58,7 @@ private:
         data_.masked = data_.masked || std::holds_alternative<Mask>(layer);
     }
 
-    LayerRecord record(const Layer& layer) const {
+    LayerRecord record(const MaterialLayer& layer) const {
         using Kind = LayerRecord::Kind;
         if (const auto* blend = std::get_if<Blend>(&layer))
             return {Kind::blend, {indices_[blend->first], indices_[blend->second]}, blend->weight};

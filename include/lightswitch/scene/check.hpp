@@ -79,7 +79,7 @@ inline void check(const FilmDescription& film) {
 }
 
 /// Numbers of the materials that a layer lies over.
-inline std::vector<std::size_t> below(const Layer& layer) {
+inline std::vector<std::size_t> below(const MaterialLayer& layer) {
     return std::visit(
         [](const auto& over) -> std::vector<std::size_t> {
             if constexpr (requires { over.inner; }) return {over.inner};
@@ -118,7 +118,7 @@ bool is_masked(const SceneDescription<Material>& scene, std::size_t number) {
     return std::any_of(inner.begin(), inner.end(), [&](std::size_t other) { return is_masked(scene, other); });
 }
 
-inline std::string layer_problem(const Layer& layer) {
+inline std::string layer_problem(const MaterialLayer& layer) {
     const auto fraction_problem = [](const std::string& what, const Texture& texture) -> std::string {
         if (const std::string problem = texture.problem(); !problem.empty()) return problem;
         if (luminance(texture.least()) >= -1e-4f && luminance(texture.most()) <= 1 + 1e-4f) return {};

@@ -12,7 +12,7 @@
 #include <lightswitch/light/environment_map.hpp>
 #include <lightswitch/light/point_light.hpp>
 #include <lightswitch/light/spot_light.hpp>
-#include <lightswitch/scene/layer.hpp>
+#include <lightswitch/scene/material_layer.hpp>
 #include <lightswitch/scene/shapes.hpp>
 
 #include <optional>
@@ -35,8 +35,8 @@ struct SceneDescription {
     struct NamedMaterial {
         Material bsdf;
         Origin origin;
-        bool two_sided = false;        ///< the back looks like the front
-        std::optional<Layer> layer{};  ///< stands in the place of `bsdf`
+        bool two_sided = false;                ///< the back looks like the front
+        std::optional<MaterialLayer> layer{};  ///< stands in the place of `bsdf`
     };
     /// Shapes in coordinates of their own, which are seen where instances place them, any number of times.
     struct Group {
@@ -75,7 +75,7 @@ struct SceneDescription {
         materials.emplace_back(std::move(both.inner), std::move(origin), true);
         return materials.size() - 1;
     }
-    [[gnu::noinline]] std::size_t add(Layer layer, Origin origin = {}) {
+    [[gnu::noinline]] std::size_t add(MaterialLayer layer, Origin origin = {}) {
         materials.emplace_back(Material(), std::move(origin), false, std::move(layer));
         return materials.size() - 1;
     }

@@ -44,6 +44,6 @@ struct BothSides {
     std::size_t front, back;
 };
 
-using Layer = std::variant<Blend, Mask, BumpMap, NormalMap, BothSides>;
+using MaterialLayer = std::variant<Blend, Mask, BumpMap, NormalMap, BothSides>;
 
 }  // namespace lightswitch
