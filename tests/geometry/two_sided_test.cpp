@@ -37,7 +37,7 @@ TEST_CASE("two-sided: models see their front, in a frame that differs from the o
     point.normal = point.shading_normal = normalize(Vec3(1, 2, 3));
     const Vec3 above = normalize(Vec3(0.3f, 0.2f, 0.9f)), below = -above;
     for (const bool both : {false, true}) {
-        point.material = MaterialIndex(3, 12345, both);
+        point.material = MaterialIndex(3, 12345, both ? MaterialIndex::both_sides : 0);
         CHECK(point.material.kind() == 3);
         CHECK(point.material.position() == 12345);
         point.wo = above;

@@ -6,11 +6,13 @@
 #include <lightswitch/geometry/place.hpp>
 
 #include <variant>
+#include <vector>
 
 namespace lightswitch {
 
 /// Gives a surface model at a place: `at(place)`, called once where a ray meets the surface. `problem()` as of `Bsdf`.
-/// Implementations must be usable from several threads at once.
+/// Implementations must be usable from several threads at once. Optionally `constant()` points to the model (within the
+/// material, as `Mapped`) where it is the same everywhere: then nothing is copied.
 template <class M>
 concept PlacedMaterial = !Bsdf<M> && requires(const M material, const Place place) {
     requires Bsdf<std::remove_cvref_t<decltype(material.at(place))>>;
@@ -66,10 +68,19 @@ struct PlacedPoint : SurfacePoint {
 
 namespace detail {
 
-/// The model of a point whose material is of that kind.
-template <std::size_t kind>
-[[gnu::always_inline]] inline const auto& model_at(const auto& point) {
-    return *std::get_if<kind>(&point.model);
+/// The model of a material if it is the same everywhere and the material says so, or else a null pointer.
+template <PlacedMaterial M>
+[[gnu::always_inline]] inline const Mapped<model_of<M>>* constant_model(const M& material) {
+    if constexpr (requires { material.constant(); }) return material.constant();
+    else return nullptr;
+}
+
+/// The model at a point of a scene with placed materials, whose material is of that kind and is kept in `list`.
+template <std::size_t kind, class M>
+[[gnu::always_inline]] inline const auto& model_at(const auto& point, const std::vector<M>& list) {
+    if constexpr (requires(const M material) { material.constant(); })
+        return point.material.varies() ? *std::get_if<kind>(&point.model) : *list[point.material.position()].constant();
+    else return *std::get_if<kind>(&point.model);
 }
 
 }  // namespace detail

@@ -67,24 +67,27 @@ private:
     std::uint32_t bits_ = empty;
 };
 
-/// Which material a surface has, and two bits about it: whether its back looks like its front, and whether light that
-/// comes from either side can matter on the other.
+/// Which material a surface has, and bits about it.
 class MaterialIndex {
 public:
-    static constexpr std::size_t max_position = TypedIndex::max_position >> 2;
+    static constexpr std::size_t max_position = TypedIndex::max_position >> 3;
+    static constexpr std::size_t both_sides = max_position + 1;  ///< the back looks like the front
+    static constexpr std::size_t through = 2 * both_sides;  ///< light that comes from one side can matter on the other
+    static constexpr std::size_t varying = 4 * both_sides;  ///< the surface model differs from place to place
 
     constexpr MaterialIndex() : MaterialIndex(0, 0) {}
-    /// `kind` at most `TypedIndex::max_kind`, `position` at most `max_position`; unchecked.
-    constexpr MaterialIndex(std::size_t kind, std::size_t position, bool two_sided = false, bool lit_through = false)
-        : index_(kind, position | (two_sided ? both_sides : 0) | (lit_through ? through : 0)) {}
+    /// `kind` at most `TypedIndex::max_kind`, `position` at most `max_position`; unchecked. `flags` are summed up.
+    constexpr MaterialIndex(std::size_t kind, std::size_t position, std::size_t flags = 0)
+        : index_(kind, position | flags) {}
 
     constexpr std::size_t kind() const { return index_.kind(); }
     constexpr std::size_t position() const { return index_.position() & max_position; }
+    constexpr std::size_t flags() const { return index_.position() & ~max_position; }
     constexpr bool two_sided() const { return (index_.position() & both_sides) != 0; }
     constexpr bool lit_through() const { return (index_.position() & through) != 0; }
+    constexpr bool varies() const { return (index_.position() & varying) != 0; }
 
 private:
-    static constexpr std::size_t both_sides = max_position + 1, through = 2 * both_sides;
     TypedIndex index_;
 };
 

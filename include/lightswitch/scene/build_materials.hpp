@@ -53,7 +53,8 @@ private:
                  "Bsdfs<...>");
         for (const std::size_t inner : below(layer)) add_material(description, inner);
         check_count(data_.layers.size(), MaterialIndex::max_position, material.origin, "layers of materials");
-        indices_[number] = MaterialIndex(layers, data_.layers.size(), material.two_sided);
+        indices_[number] = MaterialIndex(layers, data_.layers.size(),
+                                         MaterialIndex::varying | (material.two_sided ? MaterialIndex::both_sides : 0));
         data_.layers.push_back(record(layer));
         data_.masked = data_.masked || std::holds_alternative<Mask>(layer);
     }
@@ -90,10 +91,22 @@ private:
             auto& list = std::get<kind>(data_.bsdfs);
             check_count(list.size(), MaterialIndex::max_position, origin, "surface models");
             list.emplace_back(material);
-            // Of smooth lobes only: mirrors and clear glass are not asked for light.
-            const bool lit_through = !model_of<M>::specular && transmits_light(material);
-            return MaterialIndex(kind, list.size() - 1, two_sided, lit_through);
+            return MaterialIndex(kind, list.size() - 1,
+                                 (two_sided ? MaterialIndex::both_sides : 0) | flags_of(list.back()));
         }
+    }
+
+    template <class Stored>
+    static std::size_t flags_of(const Stored& material) {
+        // Of smooth lobes only: mirrors and clear glass are not asked for light.
+        std::size_t flags = !model_of<Stored>::specular && transmits_light(material) ? MaterialIndex::through : 0;
+        if constexpr (PlacedMaterial<Stored>) {
+            const auto* model = detail::constant_model(material);
+            if (!model || !is_isotropic(*model)) flags |= MaterialIndex::varying;
+        } else if (placed) {
+            flags |= MaterialIndex::varying;  // points keep the models of such scene types
+        }
+        return flags;
     }
 
     Data& data_;

@@ -142,8 +142,11 @@ bool resolve_layers(const auto& data, const Vec2& uv, SurfacePoint& point, Mappe
         if (behind) point.shading_normal = -point.shading_normal;
         two_sided = false;
     }
-    // A turned normal says little about where light comes from.
-    point.material = MaterialIndex(next.kind(), next.position(), two_sided, next.lit_through() || map.active);
+    // The point keeps its model, even of a material that is the same everywhere. A turned normal says little about where
+    // light comes from.
+    const std::size_t flags = (two_sided ? MaterialIndex::both_sides : 0) | MaterialIndex::varying |
+                              (next.lit_through() || map.active ? MaterialIndex::through : 0);
+    point.material = MaterialIndex(next.kind(), next.position(), flags);
     return true;
 }
 
@@ -170,7 +173,7 @@ inline Tangents find_tangents(const auto& data, const Placement& placement, cons
     return result;
 }
 
-/// Finds the surface model at a `PlacedPoint`, and its material, texture coordinates and tangent; false where the surface
+/// Finds the surface model at a `PlacedPoint` whose material varies, and its material, texture coordinates and tangent; false where the surface
 /// is not there. `hit` as `locate` left it.
 template <class Point>
 [[gnu::noinline]] bool resolve(const auto& data, const Placement& placement, const embree::Hit& hit, Point& point) {
@@ -220,7 +223,7 @@ template <class Point>
         embree::Hit hit;
         if (!(ray.far > 0) || !placement.accelerator.intersect(ray, hit)) return;
         locate(data, placement, ray, hit, point.emplace());
-        if (resolve(data, placement, hit, *point)) break;
+        if (!point->material.varies() || resolve(data, placement, hit, *point)) break;
     }
     point->distance += passed;
 }

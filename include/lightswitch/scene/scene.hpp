@@ -99,7 +99,7 @@ public:
         if (accelerator().intersect(ray, hit)) {
             detail::locate(data(), *placement_, ray, hit, point.emplace());
             if constexpr (placed)
-                if (!detail::resolve(data(), *placement_, hit, *point)) [[unlikely]]
+                if (point->material.varies() && !detail::resolve(data(), *placement_, hit, *point)) [[unlikely]]
                     detail::go_on(data(), *placement_, ray, point);
         }
         return point;
@@ -121,8 +121,9 @@ public:
     [[gnu::always_inline]] decltype(auto) with_bsdf(const Point& point, F&& f) const {
         return dispatch<sizeof...(B)>(
             point.material.kind(), [&](auto kind) __attribute__((always_inline))->decltype(auto) {
-                if constexpr (placed) return f(detail::model_at<kind>(point));
-                else return f(std::get<kind>(data().bsdfs)[point.material.position()]);
+                const auto& list = std::get<kind>(data().bsdfs);
+                if constexpr (placed) return f(detail::model_at<kind>(point, list));
+                else return f(list[point.material.position()]);
             });
     }
 

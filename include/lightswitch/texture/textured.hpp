@@ -19,7 +19,10 @@ public:
     static constexpr std::size_t parameters = std::tuple_size_v<std::remove_cvref_t<decltype(parameters_of<B>)>>;
 
     /// With the parameters of `constants` where no texture is set.
-    Textured(const B& constants = {}) : constants_(constants) {}
+    Textured(const B& constants = {}) { static_cast<B&>(constants_) = constants; }
+
+    /// The model where no parameter has a texture.
+    const Mapped<B>* constant() const { return varies_ ? nullptr : &constants_; }
 
     /// Sets the texture of the parameter of that name. Throws `Error` when the model has no such parameter.
     Textured& set(std::string_view name, Texture texture) {
@@ -27,6 +30,7 @@ public:
         for_each_parameter<B>([&](std::size_t i, const auto& parameter) {
             if (parameter.name != name || !parameter.varies) return;
             textures_[i] = std::make_shared<const Texture>(std::move(texture));
+            varies_ = true;
             found = true;
         });
         if (!found)
@@ -66,7 +70,8 @@ private:
         return result;
     }
 
-    B constants_;
+    Mapped<B> constants_;
+    bool varies_ = false;
     std::array<std::shared_ptr<const Texture>, parameters> textures_{};  // in the order of `parameters_of<B>`
 };
 
