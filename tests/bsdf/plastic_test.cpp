@@ -2,6 +2,7 @@
 
 #include "../support/relative.hpp"
 #include "bsdf_checks.hpp"
+#include "mitsuba_values.hpp"
 
 using namespace lightswitch;
 using test::direction;
@@ -26,6 +27,31 @@ const double level = test::sidak(1e-6, 6 * 5);
 Plastic white(float eta) { return {.eta = eta, .diffuse_reflectance = Rgb(1)}; }
 
 }  // namespace
+
+TEST_CASE("plastic: values and densities are Mitsuba's, but for its fit of the reflectance of diffuse light") {
+    const auto models = test::mitsuba_models("plastic");
+    CHECK(models.size() == 6);
+    for (const auto& model : models) {
+        const Plastic plastic{.eta = model.eta(),
+                              .diffuse_reflectance = model.color("diffuse_reflectance"),
+                              .specular_reflectance = model.color("specular_reflectance"),
+                              .nonlinear = model.text("nonlinear") == "True"};
+        // What the inside of the coat reflects, after Egan and Hilgeman 1973 and exactly.
+        const double n = 1 / double(plastic.eta), fit = 0.0636 / n + 0.6681 + 0.7099 * n - 1.4399 * n * n,
+                     exact = 1 - double(plastic.coat_transmittance) * n * n;
+        const double again = plastic.nonlinear ? double(plastic.diffuse_reflectance.x) : 1;
+        const double ratio = (1 - again * exact) / (1 - again * fit);
+        CHECK(ratio == relative(1, 1.3e-3));
+        // Mitsuba chooses between the lobes as if the base reflected its own colour; here, the whole of the lobe counts.
+        const double shift = plastic.nonlinear ? (1 - exact) / (1 - again * exact) : 1;
+        const auto pdf_ratio = [&](const Vec3& wo) {
+            const double probability = double(plastic.evaluate(wo, {0, 0, 1}, Transport::radiance).pdf.value * pi);
+            return 1 / (probability + (1 - probability) * shift);
+        };
+        test::check_against_mitsuba(
+            plastic, model, 2e-6, [&](const Vec3&, const Vec3&) { return ratio; }, pdf_ratio);
+    }
+}
 
 TEST_CASE("plastic: sampling follows the density, and the rest is the coat's") {
     std::uint32_t seed = 1;
