@@ -49,8 +49,8 @@ void check_density(const B& bsdf, const Vec3& wo, double alpha, double level, st
     CHECK(result.integral <= 1.001);  // the quadrature is good to 5e-4
 }
 
-/// The albedo by sampling is at most 1 and, without Dirac distributions, is that by quadrature of `evaluate`; returns the
-/// whole albedo.
+/// The albedo by sampling is at most 1 and, without Dirac distributions, is that by quadrature of `evaluate`; returns
+/// the whole albedo.
 template <Bsdf B>
 double check_albedo(const B& bsdf, const Vec3& wo, double alpha, std::uint32_t seed) {
     constexpr int samples = 100000;

@@ -42,7 +42,8 @@ TEST_CASE("plastic: values and densities are Mitsuba's, but for its fit of the r
         const double again = plastic.nonlinear ? double(plastic.diffuse_reflectance.x) : 1;
         const double ratio = (1 - again * exact) / (1 - again * fit);
         CHECK(ratio == relative(1, 1.3e-3));
-        // Mitsuba chooses between the lobes as if the base reflected its own colour; here, the whole of the lobe counts.
+        // Mitsuba chooses between the lobes as if the base reflected its own colour; here, the whole of the lobe
+        // counts.
         const double shift = plastic.nonlinear ? (1 - exact) / (1 - again * exact) : 1;
         const auto pdf_ratio = [&](const Vec3& wo) {
             const double probability = double(plastic.evaluate(wo, {0, 0, 1}, Transport::radiance).pdf.value * pi);

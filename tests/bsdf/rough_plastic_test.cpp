@@ -51,8 +51,8 @@ TEST_CASE("rough plastic: values and densities agree with Mitsuba's") {
                                    .nonlinear = model.text("nonlinear") == "True"};
         RoughPlastic coat_alone = plastic;
         coat_alone.diffuse_reflectance = Rgb(0);
-        // Mitsuba's fit of the masking of Beckmann's facets, up to 0.35 % off, shows in the coat, where it is undone, and
-        // in the transmittance. Of the densities, the probability of the coat contains 1 - transmittance.
+        // Mitsuba's fit of the masking of Beckmann's facets, up to 0.35 % off, shows in the coat, where it is undone,
+        // and in the transmittance. Of the densities, the probability of the coat contains 1 - transmittance.
         const bool ggx = model.facets() == Facets::ggx;
         const auto coat_part = [&](const Vec3& wo, const Vec3& wi, int c) {
             return double(coat_alone.evaluate(wo, wi, Transport::radiance).value[c] * wi.z);

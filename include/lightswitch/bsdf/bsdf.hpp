@@ -46,10 +46,10 @@ struct PhongTerms {
 /// - `sample(wo, u, transport)`: a direction, or nothing when light is absorbed;
 /// - `problem()`: why the parameters are impossible, in words, or an empty string.
 ///
-/// Optionally `phong()` returns the `PhongTerms` that represent the model, `static constexpr bool transmits = true` says
-/// that light gets through the surface, and `static constexpr bool partly_specular = true` that beside smooth lobes there
-/// are Dirac distributions: those come from `sample` alone, with a weight that is divided by the probability of the
-/// lobe; `evaluate` knows the smooth lobes, and its density integrates to their probability.
+/// Optionally `phong()` returns the `PhongTerms` that represent the model, `static constexpr bool transmits = true`
+/// says that light gets through the surface, and `static constexpr bool partly_specular = true` that beside smooth
+/// lobes there are Dirac distributions: those come from `sample` alone, with a weight that is divided by the
+/// probability of the lobe; `evaluate` knows the smooth lobes, and its density integrates to their probability.
 template <class B>
 concept Bsdf = requires(const B bsdf, const Vec3 direction, const Vec3 u, const Transport transport) {
     { B::specular } -> std::convertible_to<bool>;

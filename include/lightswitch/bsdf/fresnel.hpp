@@ -71,12 +71,12 @@ inline Rgb fresnel_conductor(float cos_i, const Rgb& eta, const Rgb& k) {
             fresnel_conductor(cos_i, eta.z, k.z)};
 }
 
-/// What part of evenly diffuse light gets through a boundary from its front: the integral of 2 cos (1 - reflectance) over
-/// the cosine. Of light from behind, `diffuse_transmittance(eta) / eta^2` gets through, by reciprocity. `eta` as of
-/// `fresnel_dielectric`; the result is within 0 to 1 and has the digits of a float.
+/// What part of evenly diffuse light gets through a boundary from its front: the integral of 2 cos (1 - reflectance)
+/// over the cosine. Of light from behind, `diffuse_transmittance(eta) / eta^2` gets through, by reciprocity. `eta` as
+/// of `fresnel_dielectric`; the result is within 0 to 1 and has the digits of a float.
 ///
-/// The closed form is that of Walsh, 1926 (in Duntley, "The Optical Properties of Diffusing Materials", JOSA 1942). Near
-/// index 1 its terms grow like 1 / (eta - 1) and cancel, for which doubles have digits enough.
+/// The closed form is that of Walsh, 1926 (in Duntley, "The Optical Properties of Diffusing Materials", JOSA 1942).
+/// Near index 1 its terms grow like 1 / (eta - 1) and cancel, for which doubles have digits enough.
 inline float diffuse_transmittance(float eta) {
     if (eta == 1) return 1;
     const double n = eta > 1 ? double(eta) : 1 / double(eta);

@@ -17,9 +17,10 @@ namespace lightswitch {
 
 /// How much light gets through a rough boundary with isotropic facets, by single scattering with Smith's masking.
 ///
-/// The numbers are Mitsuba 3's (`roughplastic`), so that images agree: transmittance at 64 equidistant cosines, straight
-/// between them, and the reflectance from inside as the plain mean over these cosines. Both are less than the integrals
-/// (a smooth coat of index 1.49 is said to reflect 0.581 of the light inside, and not 0.590), and what is lost is absorbed.
+/// The numbers are Mitsuba 3's (`roughplastic`), so that images agree: transmittance at 64 equidistant cosines,
+/// straight between them, and the reflectance from inside as the plain mean over these cosines. Both are less than the
+/// integrals (a smooth coat of index 1.49 is said to reflect 0.581 of the light inside, and not 0.590), and what is
+/// lost is absorbed.
 class RoughCoat {
 public:
     static constexpr int cosines = 64;
@@ -121,8 +122,8 @@ private:
     float inside_reflectance_ = 0;
 };
 
-/// The coat of that kind, made when it is first asked for and kept until the program ends (some 300 bytes). May be asked
-/// for by several threads at once. Where the parameters are impossible it absorbs everything.
+/// The coat of that kind, made when it is first asked for and kept until the program ends (some 300 bytes). May be
+/// asked for by several threads at once. Where the parameters are impossible it absorbs everything.
 inline const RoughCoat& rough_coat(Facets distribution, float alpha, float eta) {
     using Key = std::tuple<Facets, float, float>;
     static const RoughCoat black;

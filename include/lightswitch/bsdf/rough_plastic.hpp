@@ -7,8 +7,8 @@ namespace lightswitch {
 
 /// Rough plastic, front side only: a diffuse base under a clear coat with microfacets. Mitsuba's `roughplastic`.
 ///
-/// The coat reflects as a `RoughConductor` does, with Fresnel's equations for a dielectric. What enters meets the base and
-/// the inside of the coat in turn until it gets out: see `Plastic`, whose smooth coat is here a `RoughCoat`.
+/// The coat reflects as a `RoughConductor` does, with Fresnel's equations for a dielectric. What enters meets the base
+/// and the inside of the coat in turn until it gets out: see `Plastic`, whose smooth coat is here a `RoughCoat`.
 struct RoughPlastic {
     static constexpr bool specular = false;
 
