@@ -69,6 +69,39 @@ TEST_CASE("fresnel: dielectric limits") {
     }
 }
 
+TEST_CASE("fresnel: what a dielectric transmits, with all digits at grazing angles") {
+    for (const float eta : {1.0f, 1 + 0x1p-23f, 1.01f, 1.5f, 10.0f, 1000.0f, 0.99f, 0.6f})
+        for (const float c : {1.0f, 0.9f, 0.5f, 0.1f, 1e-3f}) {
+            CAPTURE(eta);
+            CAPTURE(c);
+            const double reflectance = double(fresnel_dielectric(c, eta).reflectance);
+            CHECK(fresnel_dielectric_transmittance(c, eta) == relative(1 - reflectance, 1e-6).or_absolute(2e-7));
+        }
+    // In the limit, 2 c (n^2 + 1) / sqrt(n^2 - 1).
+    for (const float c : {1e-5f, 1e-10f, 1e-30f})
+        CHECK(fresnel_dielectric_transmittance(c, 1.5f) == relative(2 * double(c) * 3.25 / std::sqrt(1.25), 1e-4));
+}
+
+TEST_CASE("fresnel: what a dielectric transmits of diffuse light is the integral over all cosines") {
+    for (const float eta :
+         {1.0f, 1 + 0x1p-23f, 1.0001f, 1.01f, 1.33f, 1.5f, 2.5f, 10.0f, 1000.0f, 0.999f, 0.7f, 0.1f}) {
+        CAPTURE(eta);
+        // Midpoints of t, cos = c + (1 - c) t^2: the integrand has the root of a sine at the critical cosine c.
+        const double critical = std::sqrt(std::max(0.0, 1 - double(eta) * double(eta)));
+        double sum = 0;
+        constexpr int steps = 20000;
+        for (int i = 0; i < steps; ++i) {
+            const double t = (i + 0.5) / steps, c = critical + (1 - critical) * t * t;
+            sum += 2 * c * double(fresnel_dielectric_transmittance(float(c), eta)) * 2 * t * (1 - critical) / steps;
+        }
+        CHECK(diffuse_transmittance(eta) == relative(sum, 1e-5));
+        CHECK(diffuse_transmittance(eta) == relative(double(eta) * eta * diffuse_transmittance(1 / eta), 1e-6));
+        CHECK(diffuse_transmittance(eta) <= 1);
+    }
+    CHECK(diffuse_transmittance(1.5f) == relative(0.90822204, 1e-6));  // by Gauss's quadrature in double precision
+    CHECK(diffuse_transmittance(0.001f) == relative(5.28006061e-9, 1e-6));
+}
+
 TEST_CASE("fresnel: conductor values agree with Mitsuba's") {
     const struct {
         float eta, k, cos_i, reflectance;

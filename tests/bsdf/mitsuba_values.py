@@ -35,7 +35,23 @@ FACETS = [
     for u, v in ((0.05, 0.05), (0.3, 0.1), (0.1, 0.6), (0.5, 0.5), (1, 0.2), (1, 1))
 ]
 
+COLOURS = {"diffuse_reflectance": [0.8, 0.5, 0.1], "specular_reflectance": [0.9, 0.7, 0.4]}
+GREYS = {"diffuse_reflectance": [0.7, 0.7, 0.7], "specular_reflectance": [0.9, 0.9, 0.9]}
+
 MODELS = {
+    "plastic": [
+        {"int_ior": int_ior, "ext_ior": ext_ior, "nonlinear": nonlinear, **(GREYS if nonlinear else COLOURS)}
+        for int_ior, ext_ior in ((1.49, 1.000277), (1.3, 1.0), (1.9, 1.1))
+        for nonlinear in (False, True)
+    ],
+    "roughplastic": [
+        {"distribution": distribution, "alpha": alpha, "int_ior": int_ior, "ext_ior": ext_ior, "nonlinear": nonlinear,
+         **COLOURS}
+        for distribution in ("ggx", "beckmann")
+        for alpha, int_ior, ext_ior, nonlinear in (
+            (0.05, 1.49, 1.000277, False), (0.1, 1.49, 1.000277, True), (0.2, 1.9, 1.0, False), (0.3, 1.3, 1.0, True),
+            (0.5, 1.49, 1.000277, False), (1, 1.5, 1.0, False), (0.2, 1.0, 1.33, False))
+    ],
     "roughconductor": [{**f, **GOLD, "specular_reflectance": [0.9, 0.8, 0.7]} for f in FACETS],
     "roughdielectric": [
         {**f, "int_ior": int_ior, "ext_ior": ext_ior, "rows": 5, "specular_reflectance": [0.9, 0.8, 0.7],

@@ -35,6 +35,15 @@ inline FresnelDielectric fresnel_dielectric(float cos_i, float eta) {
     return {0.5f * (square(perpendicular) + square(parallel)), std::copysign(q / relative, -cos_i), relative};
 }
 
+/// 1 - reflectance, of which grazing directions leave no digits, for the cosine `cos_i`, above 0, and `eta` of
+/// `fresnel_dielectric`.
+inline float fresnel_dielectric_transmittance(float cos_i, float eta) {
+    const float q_squared = (eta - 1) * (eta + 1) + cos_i * cos_i;
+    if (!(q_squared > 0)) return eta == 1 ? 1.0f : 0.0f;
+    const float q = std::sqrt(q_squared);
+    return 2 * cos_i * q * (1 / square(cos_i + q) + square(eta / (eta * eta * cos_i + q)));
+}
+
 /// Reflectance of a conductor whose index of refraction is eta - i k, in air or vacuum, for `cos_i` from 0 to 1
 /// (Born and Wolf, section 14.2). eta and k are not below 0 and not both 0. The result is within 0 to 1.
 ///
@@ -60,6 +69,23 @@ inline float fresnel_conductor(float cos_i, float eta, float k) {
 inline Rgb fresnel_conductor(float cos_i, const Rgb& eta, const Rgb& k) {
     return {fresnel_conductor(cos_i, eta.x, k.x), fresnel_conductor(cos_i, eta.y, k.y),
             fresnel_conductor(cos_i, eta.z, k.z)};
+}
+
+/// What part of evenly diffuse light gets through a boundary from its front: the integral of 2 cos (1 - reflectance)
+/// over the cosine. Of light from behind, `diffuse_transmittance(eta) / eta^2` gets through, by reciprocity. `eta` as
+/// of `fresnel_dielectric`; the result is within 0 to 1 and has the digits of a float.
+///
+/// The closed form is that of Walsh, 1926 (in Duntley, "The Optical Properties of Diffusing Materials", JOSA 1942).
+/// Near index 1 its terms grow like 1 / (eta - 1) and cancel, for which doubles have digits enough.
+inline float diffuse_transmittance(float eta) {
+    if (eta == 1) return 1;
+    const double n = eta > 1 ? double(eta) : 1 / double(eta);
+    const double n2 = n * n, plus = n2 + 1, minus = (n - 1) * (n + 1), product = plus * minus, ln = std::log1p(n - 1);
+    const double reflectance = 0.5 + (n - 1) * (3 * n + 1) / (6 * (n + 1) * (n + 1)) +
+                               n2 * minus * minus / (plus * plus * plus) * (std::log(n - 1) - std::log(n + 1)) -
+                               2 * n2 * n * (n2 + 2 * n - 1) / (plus * product) +
+                               8 * n2 * n2 * (n2 * n2 + 1) / (plus * product * product) * ln;
+    return static_cast<float>(eta > 1 ? 1 - reflectance : (1 - reflectance) / n2);
 }
 
 /// Explains an index of refraction that no conductor can have, or returns an empty string.
