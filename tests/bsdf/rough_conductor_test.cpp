@@ -2,6 +2,7 @@
 
 #include "../support/relative.hpp"
 #include "bsdf_checks.hpp"
+#include "mitsuba_values.hpp"
 
 using namespace lightswitch;
 using test::direction;
@@ -12,7 +13,12 @@ static_assert(Bsdf<RoughConductor>);
 namespace {
 
 RoughConductor metal(float alpha) {
-    return {.alpha = alpha, .eta = {0.2f, 0.92f, 1.1f}, .k = {3.9f, 2.45f, 2.14f}, .reflectance = {0.9f, 0.8f, 0.7f}};
+    return {.distribution = Facets::ggx,
+            .alpha_u = alpha,
+            .alpha_v = alpha,
+            .eta = {0.2f, 0.92f, 1.1f},
+            .k = {3.9f, 2.45f, 2.14f},
+            .reflectance = {0.9f, 0.8f, 0.7f}};
 }
 
 constexpr float alphas[] = {0.02f, 0.1f, 0.3f, 1};
@@ -22,61 +28,16 @@ const double level = test::sidak(1e-6, 4 * 5 + 2 + 8);
 }  // namespace
 
 TEST_CASE("rough conductor: values and densities agree with Mitsuba's") {
-    // Mitsuba 3 (scalar_rgb), roughconductor, ggx, specular_reflectance 0.9 0.8 0.7: eval includes the cosine.
-    const struct {
-        float alpha;
-        Vec3 wo, wi;
-        Rgb eval;
-        float pdf;
-    } table[] = {
-        {0.001f,
-         {0.483580083f, 0.0565183982f, 0.873473525f},
-         {-0.485831022f, -0.0564822778f, 0.872225881f},
-         {11002.6602f, 6371.74512f, 4595.92969f},
-         12846.626f},
-        {0.02f,
-         {0.717006385f, -0.692972302f, 0.075439781f},
-         {-0.7168414f, 0.694677234f, 0.0596821047f},
-         {1125.14331f, 896.187622f, 760.257141f},
-         1319.88269f},
-        {0.02f,
-         {-0.849748731f, -0.442132264f, 0.287134409f},
-         {0.955817759f, -0.0733603612f, 0.284658909f},
-         {0.000445914367f, 0.000269249751f, 0.000204522847f},
-         0.000525944226f},
-        {0.02f,
-         {-0.738772452f, 0.25094521f, 0.625493228f},
-         {0.712163925f, -0.240069896f, 0.659688532f},
-         {53.6673431f, 31.1957321f, 22.7746143f},
-         62.8423195f},
-        {0.1f,
-         {-0.451820582f, 0.532039225f, 0.716095269f},
-         {0.337950438f, -0.404790908f, 0.849666893f},
-         {2.02501464f, 1.17314792f, 0.848511815f},
-         2.36824059f},
-        {0.1f,
-         {0.681962967f, -0.558103859f, 0.472701371f},
-         {0.325997263f, 0.945234179f, 0.0160675198f},
-         {0.00056392292f, 0.0003287367f, 0.000241209142f},
-         0.00241329009f},
-        {1,
-         {-0.752863288f, 0.549411774f, 0.362413526f},
-         {-0.186249435f, 0.878978431f, 0.438985258f},
-         {0.0610611178f, 0.0353600457f, 0.0254767388f},
-         0.116818398f},
-        {1,
-         {-0.757845938f, 0.610261977f, 0.230759203f},
-         {0.894080877f, -0.122380272f, 0.430862486f},
-         {0.0661489889f, 0.0396095887f, 0.0298965815f},
-         0.129314467f},
-    };
-    for (const auto& row : table) {
-        CAPTURE(row.alpha);
-        CAPTURE(row.pdf);
-        const BsdfValue v = metal(row.alpha).evaluate(row.wo, row.wi, Transport::radiance);
-        for (int c = 0; c < 3; ++c) CHECK(v.value[c] * row.wi.z == relative(row.eval[c], 1e-5));
-        CHECK(v.pdf.value == relative(row.pdf, 1e-5));
-    }
+    const auto models = test::mitsuba_models("roughconductor");
+    CHECK(models.size() == 12);
+    for (const auto& model : models)
+        test::check_facets_against_mitsuba(RoughConductor{.distribution = model.facets(),
+                                                          .alpha_u = model.number("alpha_u"),
+                                                          .alpha_v = model.number("alpha_v"),
+                                                          .eta = model.color("eta"),
+                                                          .k = model.color("k"),
+                                                          .reflectance = model.color("specular_reflectance")},
+                                           model, 1e-4);
 }
 
 TEST_CASE("rough conductor: sampling follows the density") {
@@ -103,7 +64,7 @@ TEST_CASE("rough conductor: a density without the Jacobian of reflection, or wit
     };
     CHECK(p_value([](const Vec3&) { return 1.0; }) > 1e-6);
     CHECK(p_value([&](const Vec3& half) { return 4 * double(dot(wo, half)); }) < 1e-12);
-    CHECK(p_value([&](const Vec3&) { return double(Ggx(0.3f).smith_denominator(wo.z) / (2 * wo.z)); }) < 1e-12);
+    CHECK(p_value([&](const Vec3&) { return 1 / double(Microfacets(Facets::ggx, 0.3f, 0.3f).masking(wo)); }) < 1e-12);
 }
 
 TEST_CASE("rough conductor: energy") {
@@ -114,7 +75,8 @@ TEST_CASE("rough conductor: energy") {
             // The ideal metal loses what single scattering loses: little when smooth; for alpha 1, where D is constant,
             // the albedo is an integral with the closed form 2 (1 - ln 2) / (1 + cos).
             const double white =
-                test::check_albedo(RoughConductor{.alpha = alpha}, direction(cosine), double(alpha), seed++);
+                test::check_albedo(RoughConductor{.distribution = Facets::ggx, .alpha_u = alpha, .alpha_v = alpha},
+                                   direction(cosine), double(alpha), seed++);
             if (alpha == 1) CHECK(white == relative(2 * (1 - std::log(2.0)) / (1 + cosine), 0.015));
             if (alpha < 0.05f && cosine > 0.3) CHECK(white > 0.995);
         }
@@ -149,13 +111,13 @@ TEST_CASE("rough conductor: approaches the mirror") {
 TEST_CASE("rough conductor: extremes") {
     for (const float alpha : {1e-6f, 1e-4f, 0.001f, 0.005f, 0.1f, 1.0f}) {
         CAPTURE(alpha);
-        test::check_extremes(RoughConductor{.alpha = alpha});
+        test::check_extremes(RoughConductor{.distribution = Facets::ggx, .alpha_u = alpha, .alpha_v = alpha});
     }
 }
 
 TEST_CASE("rough conductor: impossible parameters are explained") {
     CHECK(metal(1).problem() == "");
-    for (const float alpha : {0.0f, -0.1f, 1.1f, infinity, NAN}) CHECK(metal(alpha).problem().find("alpha is") == 0);
+    for (const float alpha : {0.0f, -0.1f, 1.1f, infinity, NAN}) CHECK(metal(alpha).problem().find("alpha_u is") == 0);
     CHECK(RoughConductor{.k = Rgb(1, 1, -0.5f)}.problem().find("k has a component of -0.5") == 0);
     CHECK(RoughConductor{.eta = Rgb(1, 1, NAN)}.problem().find("eta has") == 0);
     CHECK(RoughConductor{.k = Rgb(infinity)}.problem().find("k has") == 0);

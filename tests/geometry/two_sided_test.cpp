@@ -58,7 +58,7 @@ TEST_CASE("two-sided: the back looks like the front, and is black otherwise") {
     CHECK(brightness(square_seen_from(3, true)) == front);
     CHECK(brightness(square_seen_from(-3, false)) < 0.5 * front);
     CHECK(brightness(square_seen_from(-3, true)) == relative(front, 0.02));
-    const RoughConductor metal{.alpha = 0.3f};
+    const RoughConductor metal{.distribution = Facets::ggx, .alpha_u = 0.3f, .alpha_v = 0.3f};
     CHECK(brightness(square_seen_from(-3, true, metal)) ==
           relative(brightness(square_seen_from(3, false, metal)), 0.02));
 }

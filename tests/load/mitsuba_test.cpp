@@ -103,7 +103,7 @@ TEST_CASE("the reference scenes load with their values") {
 
     const auto mis = load_mitsuba(folder / "veach-mis.xml");
     CHECK(mis.shapes.size() == 10);
-    CHECK(std::get<RoughConductor>(mis.materials[mis.shapes[5].material].bsdf).alpha == 0.005f);
+    CHECK(std::get<RoughConductor>(mis.materials[mis.shapes[5].material].bsdf).alpha_u == 0.005f);
 }
 
 TEST_CASE("what a scene leaves out has Mitsuba's defaults") {
@@ -138,7 +138,7 @@ TEST_CASE("what a scene leaves out has Mitsuba's defaults") {
     CHECK(metal.reflectance == Rgb(1));
     CHECK(std::get<RoughConductor>(
               bsdf("<bsdf type=\"roughconductor\"><string name=\"distribution\" value=\"GGX\"/></bsdf>"))
-              .alpha == 0.1f);
+              .alpha_u == 0.1f);
     const auto sampler = parse("<sensor type=\"perspective\"><sampler type=\"multijitter\"/></sensor>");
     CHECK(sampler.samples == 4);
 }
@@ -163,7 +163,7 @@ TEST_CASE("BSDFs are read with their parameters") {
              "<float name=\"alpha_u\" value=\"0.3\"/><float name=\"alpha_v\" value=\"0.3\"/><rgb name=\"eta\" "
              "value=\"1,2,3\"/>"
              "<float name=\"k\" value=\"4\"/><boolean name=\"sample_visible\" value=\"false\"/></bsdf></bsdf>"));
-    CHECK(rough.alpha == 0.3f);
+    CHECK(rough.alpha_u == 0.3f);
     CHECK(rough.eta == Rgb(1, 2, 3));
     CHECK(rough.k == Rgb(4));
     CHECK(std::holds_alternative<Conductor>(bsdf("<bsdf type=\"twosided\"><bsdf type=\"conductor\"/></bsdf>")));

@@ -104,7 +104,8 @@ TEST_CASE("abilities: a diffuse surface under a sky") {
 
 TEST_CASE("abilities: a lamp's reflection in rough metal") {
     LibraryDescription scene;
-    scene.add(quad({-3, 0, 3}, {3, 0, 3}, {3, 0, -3}, {-3, 0, -3}), scene.add(RoughConductor{.alpha = 0.15f}));
+    scene.add(quad({-3, 0, 3}, {3, 0, 3}, {3, 0, -3}, {-3, 0, -3}),
+              scene.add(RoughConductor{.distribution = Facets::ggx, .alpha_u = 0.15f, .alpha_v = 0.15f}));
     scene.add(quad({-0.5, 2, -0.5}, {0.5, 2, -0.5}, {0.5, 2, 0.5}, {-0.5, 2, 0.5}), scene.add(Lambert{Rgb(0)}),
               Rgb(10));
     scene.camera.fov = 20;

@@ -222,8 +222,12 @@ inline LibraryDescription camera_in_glass() {
 /// Rough metal, and rough metal seen in rough metal.
 inline LibraryDescription rough_metals() {
     LibraryDescription scene = stage();
-    scene.materials[1].bsdf = RoughConductor{.alpha = 0.3f, .eta = Rgb(0.2f, 0.9f, 1.1f), .k = Rgb(3.9f, 2.5f, 2.2f)};
-    scene.materials[2].bsdf = RoughConductor{.alpha = 0.5f};
+    scene.materials[1].bsdf = RoughConductor{.distribution = Facets::ggx,
+                                             .alpha_u = 0.3f,
+                                             .alpha_v = 0.3f,
+                                             .eta = Rgb(0.2f, 0.9f, 1.1f),
+                                             .k = Rgb(3.9f, 2.5f, 2.2f)};
+    scene.materials[2].bsdf = RoughConductor{.distribution = Facets::ggx, .alpha_u = 0.5f, .alpha_v = 0.5f};
     scene.add(quad({-1.5, 2, -1}, {1.5, 2, -1}, {1.5, 2, 1}, {-1.5, 2, 1}), scene.add(Lambert{Rgb(0.3f)}), Rgb(4));
     return scene;
 }

@@ -139,7 +139,8 @@ TEST_CASE("white things vanish in a white environment") {
 TEST_CASE("rough metal returns no more than it receives, and polished metal nearly all") {
     for (const float alpha : {0.01f, 0.1f, 0.5f, 1.0f}) {
         CAPTURE(alpha);
-        const FullScene scene = build(describe_sphere_in_white(RoughConductor{.alpha = alpha}));
+        const FullScene scene = build(
+            describe_sphere_in_white(RoughConductor{.distribution = Facets::ggx, .alpha_u = alpha, .alpha_v = alpha}));
         for (const Image& image :
              {render(scene, PathTracer{}, {.samples = 64}), render(scene, PathTracerNee{}, {.samples = 256})}) {
             // Of the path tracer every single sample is at most 1; with light sampling 5 standard errors, as above.

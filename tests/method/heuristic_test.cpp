@@ -198,7 +198,8 @@ TEST_CASE("Phong lights the side that is seen") {
 }
 
 TEST_CASE("a highlight is where a mirror would show the light, and the picture is symmetric") {
-    LibraryDescription description = describe_plane(RoughConductor{.alpha = 0.1f});
+    LibraryDescription description =
+        describe_plane(RoughConductor{.distribution = Facets::ggx, .alpha_u = 0.1f, .alpha_v = 0.1f});
     description.add(PointSource{{0, 3, 10}, Rgb(1)});  // as high as the camera: mirrored half-way, at y = 1.5
     const FullScene scene = build(description);
     const Image image = render(scene, no_ambient, {.samples = 256});

@@ -63,7 +63,11 @@ TEST_CASE("strategies: each is unbiased for light from a point and from a direct
 
 TEST_CASE("strategies: each is unbiased with rough metal") {
     LibraryDescription metal = scenes::hollow_sphere();
-    metal.materials[0].bsdf = RoughConductor{.alpha = 0.6f, .eta = Rgb(0.2f, 0.9f, 1.1f), .k = Rgb(3.9f, 2.5f, 2.2f)};
+    metal.materials[0].bsdf = RoughConductor{.distribution = Facets::ggx,
+                                             .alpha_u = 0.6f,
+                                             .alpha_v = 0.6f,
+                                             .eta = Rgb(0.2f, 0.9f, 1.1f),
+                                             .k = Rgb(3.9f, 2.5f, 2.2f)};
     metal.add(quad({-0.4, 0.6, -0.5}, {0.4, 0.6, -0.5}, {0.4, 0.7, 0.1}, {-0.4, 0.7, 0.1}),
               metal.add(Lambert{Rgb(0.5f)}), Rgb(6));
     check_strategies(metal, 0, 3, 24, 1);

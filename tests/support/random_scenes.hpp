@@ -18,8 +18,13 @@ inline LibraryDescription random_scene(std::uint32_t seed) {
         return Rgb(DVec3(number(low, high), number(low, high), number(low, high)));
     };
     const auto rough = [&] {
-        return RoughConductor{
-            .alpha = float(number(0.15, 0.6)), .eta = color(0.1, 2), .k = color(1, 4), .reflectance = color(0.5, 1)};
+        const auto alpha = float(number(0.15, 0.6));
+        return RoughConductor{.distribution = Facets::ggx,
+                              .alpha_u = alpha,
+                              .alpha_v = alpha,
+                              .eta = color(0.1, 2),
+                              .k = color(1, 4),
+                              .reflectance = color(0.5, 1)};
     };
 
     LibraryDescription scene;

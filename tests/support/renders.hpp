@@ -69,7 +69,8 @@ inline LibraryDescription describe_veach_mis() {
     scene.add(Sphere{{1.25, 0, 0}, 0.3}, black, Rgb(11.1111f));
     scene.add(Sphere{{3.75, 0, 0}, 0.9}, black, Rgb(1.23457f));
     const auto plate = [&](float alpha, double y0, double z0, double y1, double z1) {
-        const RoughConductor metal{.alpha = alpha, .reflectance = {0.7f, 0.75f, 0.8f}};
+        const RoughConductor metal{
+            .distribution = Facets::ggx, .alpha_u = alpha, .alpha_v = alpha, .reflectance = {0.7f, 0.75f, 0.8f}};
         scene.add(quad({4, y0, z0}, {4, y1, z1}, {-4, y1, z1}, {-4, y0, z0}),
                   scene.add(TwoSided<RoughConductor>{metal}));
     };

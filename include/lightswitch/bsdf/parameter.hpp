@@ -29,14 +29,26 @@ inline constexpr ParameterRange metal_index{.least = 0, .most = 1e8f};
 inline constexpr ParameterRange relative_index{.least = 1e-3f, .most = 1e3f};
 
 /// A parameter of a surface model: its name in scene files, where it is kept, which values it can have, and whether it
-/// may differ from place to place. `T` is `float` or `Rgb`.
+/// may differ from place to place. A name that stands for two others is kept in two places. `T` is `float` or `Rgb`.
 template <class B, class T>
 struct Parameter {
     std::string_view name;
     T B::*member;
     ParameterRange range = fraction;
     bool varies = true;
+    T B::*also = nullptr;
+
+    void set(B& model, const T& value) const {
+        model.*member = value;
+        if (also) model.*also = value;
+    }
 };
+
+/// The roughness of facets that are stretched along x and y: "alpha_u", "alpha_v", and "alpha" for both.
+template <class B>
+inline constexpr auto stretched_roughness =
+    std::tuple{Parameter{"alpha_u", &B::alpha_u, roughness}, Parameter{"alpha_v", &B::alpha_v, roughness},
+               Parameter{"alpha", &B::alpha_u, roughness, true, &B::alpha_v}};
 
 /// The parameters of a surface model, as a `std::tuple` of `Parameter`s; each model names its own beside itself.
 template <class B>

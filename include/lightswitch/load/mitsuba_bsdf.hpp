@@ -61,7 +61,8 @@ inline RoughConductor read_rough_conductor(XmlElement& element) {
         element.error("give either alpha, or both alpha_u and alpha_v");
     if (alpha_u && *alpha_u != *alpha_v)
         element.error("anisotropic roughness is not supported: alpha_u and alpha_v must be equal");
-    result.alpha = static_cast<float>(alpha_u ? *alpha_u : alpha.value_or(0.1));
+    result.distribution = Facets::ggx;
+    result.alpha_u = result.alpha_v = static_cast<float>(alpha_u ? *alpha_u : alpha.value_or(0.1));
     return result;
 }
 

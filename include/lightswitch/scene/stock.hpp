@@ -86,7 +86,8 @@ inline void add_two_rooms(LibraryDescription& scene) {
     const std::size_t light_tile = scene.add(Lambert{{0.74f, 0.72f, 0.68f}});
     const std::size_t dark_tile = scene.add(Lambert{{0.22f, 0.20f, 0.20f}});
     const std::size_t paint = scene.add(Lambert{{0.55f, 0.29f, 0.17f}});
-    const std::size_t brass = scene.add(RoughConductor{.alpha = 0.2f, .reflectance = {0.9f, 0.7f, 0.35f}});
+    const std::size_t brass = scene.add(RoughConductor{
+        .distribution = Facets::ggx, .alpha_u = 0.2f, .alpha_v = 0.2f, .reflectance = {0.9f, 0.7f, 0.35f}});
     const std::size_t lamp = scene.add(TwoSided<Lambert>{{Rgb(0.5f)}});
     scene.add(block({-2.6, -0.1, -3}, {2.6, 2.6, 5}).flipped(), plaster);
     scene.add(quad({-2.5, -0.2, 5.1}, {-2.5, -0.2, -3.1}, {-2.5, 2.7, -3.1}, {-2.5, 2.7, 5.1}), blue);
@@ -115,7 +116,9 @@ inline void add_table(LibraryDescription& scene) {
     };
     stand(-0.48, 2.02, 0.21, Dielectric{.eta = 1.5f});
     stand(-0.06, 1.72, 0.26, Conductor{.reflectance = Rgb(0.9f)});
-    stand(0.4, 2.12, 0.19, RoughConductor{.alpha = 0.15f, .reflectance = {0.9f, 0.62f, 0.3f}});
+    stand(0.4, 2.12, 0.19,
+          RoughConductor{
+              .distribution = Facets::ggx, .alpha_u = 0.15f, .alpha_v = 0.15f, .reflectance = {0.9f, 0.62f, 0.3f}});
     stand(0.88, 1.8, 0.24, Lambert{{0.2f, 0.5f, 0.42f}});
 }
 
@@ -177,7 +180,8 @@ inline LibraryDescription describe_cornell_spheres() {
 inline LibraryDescription describe_cornell_sculpture() {
     LibraryDescription scene = detail::empty_room("cornell-sculpture");
     const std::size_t mirror = scene.add(Conductor{.reflectance = Rgb(0.9f)});
-    const std::size_t bronze = scene.add(RoughConductor{.alpha = 0.25f, .reflectance = Rgb(0.85f, 0.62f, 0.4f)});
+    const std::size_t bronze = scene.add(RoughConductor{
+        .distribution = Facets::ggx, .alpha_u = 0.25f, .alpha_v = 0.25f, .reflectance = Rgb(0.85f, 0.62f, 0.4f)});
     scene.add(Sphere{{0.45, -0.65, 0.3}, 0.35}, mirror);
     const DMat4 place({0.5, 0, -0.2, 0}, {0, 0.54, 0, 0}, {0.2, 0, 0.5, 0}, {-0.35, -0.39, -0.3, 1});
     scene.add(torus_knot().transformed(place), bronze);
@@ -190,7 +194,8 @@ inline LibraryDescription describe_still_life() {
     LibraryDescription scene;
     scene.name = "still-life";
     const std::size_t stone = scene.add(Lambert{{0.62f, 0.58f, 0.52f}});
-    const std::size_t bronze = scene.add(RoughConductor{.alpha = 0.25f, .reflectance = {0.85f, 0.62f, 0.4f}});
+    const std::size_t bronze = scene.add(RoughConductor{
+        .distribution = Facets::ggx, .alpha_u = 0.25f, .alpha_v = 0.25f, .reflectance = {0.85f, 0.62f, 0.4f}});
     const std::size_t lamp = scene.add(Lambert{Rgb(0)});
     scene.add(detail::block({-1.3, -0.12, -0.8}, {1.3, 0, 0.8}), stone);
     scene.add(

@@ -54,9 +54,9 @@ private:
         for_each_parameter<B>([&](std::size_t i, const auto& parameter) {
             if (!textures_[i]) return;
             const Rgb value = value_of(*textures_[i]);
-            auto& member = result.*parameter.member;
-            if constexpr (std::is_same_v<std::remove_cvref_t<decltype(member)>, float>) member = luminance(value);
-            else member = value;
+            if constexpr (std::is_same_v<std::remove_cvref_t<decltype(result.*parameter.member)>, float>)
+                parameter.set(result, luminance(value));
+            else parameter.set(result, value);
         });
         return result;
     }

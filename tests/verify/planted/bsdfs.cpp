@@ -53,7 +53,7 @@ std::vector<PlantedBug> bsdf_bugs() {
     const Rgb blue(0.2f, 0.5f, 0.8f);
     floor("1 / pi missing in the value", PlantedLambert{inverse_pi_missing}, Lambert{});
     floor("colour channels swapped", PlantedLambert{channels_swapped, blue}, Lambert{blue});
-    const RoughConductor rough{.alpha = 0.5f};
+    const RoughConductor rough{.distribution = Facets::ggx, .alpha_u = 0.5f, .alpha_v = 0.5f};
     floor("GGX density without the Jacobian", PlantedRoughConductor{jacobian_missing}, rough);
     floor("GGX density without the Jacobian in the value alone", PlantedRoughConductor{jacobian_missing_in_value},
           rough);
@@ -83,7 +83,8 @@ std::vector<CorrectPair> bsdf_copies() {
                            }};
     };
     return {floor("lambert without a mistake", PlantedLambert{}, Lambert{}),
-            floor("rough conductor without a mistake", PlantedRoughConductor{}, RoughConductor{.alpha = 0.5f}),
+            floor("rough conductor without a mistake", PlantedRoughConductor{},
+                  RoughConductor{.distribution = Facets::ggx, .alpha_u = 0.5f, .alpha_v = 0.5f}),
             {"dielectric without a mistake", "ball-in-sky",
              [] {
                  return std::pair(on_planted(ball_in_sky<Material>(PlantedDielectric{})),

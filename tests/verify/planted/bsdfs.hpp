@@ -104,7 +104,7 @@ struct PlantedRoughConductor {
     std::string problem() const { return right().problem(); }
 
 private:
-    RoughConductor right() const { return {.alpha = alpha}; }
+    RoughConductor right() const { return {.distribution = Facets::ggx, .alpha_u = alpha, .alpha_v = alpha}; }
 
     BsdfValue value(const Vec3& wo, const Vec3& wi, Transport transport, bool without_jacobian) const {
         BsdfValue result = right().evaluate(wo, wi, transport);
@@ -112,7 +112,7 @@ private:
         if (without_jacobian || mistake == BsdfMistake::jacobian_missing)
             result.pdf.value *= 4 * dot(wo, normalize(wo + wi));
         if (mistake == BsdfMistake::masking_one_sided && wi.z > 0)
-            result.value *= Ggx(alpha).smith_denominator(wi.z) / (2 * wi.z);
+            result.value *= 1 / Microfacets(Facets::ggx, alpha, alpha).masking(wi);
         return result;
     }
 };
@@ -143,7 +143,7 @@ struct Coated {
 
 private:
     static constexpr Lambert ground{Rgb(0.7f)};
-    static constexpr RoughConductor film{.alpha = 0.3f};
+    static constexpr RoughConductor film{.distribution = Facets::ggx, .alpha_u = 0.3f, .alpha_v = 0.3f};
 };
 
 }  // namespace lightswitch::test
