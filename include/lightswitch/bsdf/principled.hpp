@@ -89,8 +89,7 @@ struct PrincipledModel {
         if (!(refracts ? wi.z * wo.z < 0 : wi.z * wo.z > 0)) return {};
         const BsdfValue v = evaluate(wo, wi, transport);
         if (!(v.pdf.value > 0)) return {};
-        return BsdfSample{
-            .wi = wi, .weight = v.value * (std::abs(wi.z) / v.pdf.value), .pdf = v.pdf, .eta = crossed};
+        return BsdfSample{.wi = wi, .weight = v.value * (std::abs(wi.z) / v.pdf.value), .pdf = v.pdf, .eta = crossed};
     }
 
     std::string problem() const;
@@ -161,7 +160,8 @@ private:
             const Specular s = specular_at(fresnel_dielectric(cos_o, index()), cos_o);
             facets_share = std::max(max_component(s.reflected + s.transmitted), 0.1f);
         }
-        const float diffuse = diffusing() * max_component(base_color) + 0.3f * sheen * (1 - metallic);
+        float diffuse = diffusing() * max_component(base_color);
+        if (sheen > 0) diffuse += 0.3f * (1 - metallic) * max_component(sheen_color(base_color, sheen, sheen_tint));
         const float coat = 0.05f * clearcoat;
         const float sum = diffuse + coat + facets_share;
         const float scale = sum > 0 ? 1 / sum : 0;
@@ -187,14 +187,16 @@ private:
             const float density = Gtr1(clearcoat_gloss).distribution(half);
             const Microfacets coat(Facets::ggx, 0.25f, 0.25f);
             const float weight = schlick_weight(fresnel, cos_half);
-            v.value += Rgb(0.25f * clearcoat * (0.04f + 0.96f * weight) * density * coat.masking(wo) * coat.masking(wi));
+            v.value +=
+                Rgb(0.25f * clearcoat * (0.04f + 0.96f * weight) * density * coat.masking(wo) * coat.masking(wi));
             v.pdf.value += lobes.clearcoat * density * (half.z / squared) * 0.5f;
         }
         if (lobes.diffuse > 0) {
             if (diffusing() > 0)
-                v.value += diffusing() * inv_pi *
-                           principled_diffuse(wo.z, wi.z, cos_half, roughness, flatness) * base_color;
-            if (sheen > 0) v.value += (1 - metallic) * principled_sheen(cos_half, base_color, sheen, sheen_tint);
+                v.value +=
+                    diffusing() * inv_pi * principled_diffuse(wo.z, wi.z, cos_half, roughness, flatness) * base_color;
+            if (sheen > 0)
+                v.value += (1 - metallic) * schlick_weight(cos_half) * sheen_color(base_color, sheen, sheen_tint);
             v.pdf.value += lobes.diffuse * cosine_hemisphere_pdf(wi.z).value;
         }
         return v;
@@ -221,8 +223,12 @@ private:
         const float o = side * dot(wo, half), i = -side * dot(wi, half);
         // Facets are seen from both sides of the surface only if these are the sides of the facets too.
         if (!(o > 0 && i > 0)) return {};
-        const float cosine = side * std::min(o / std::sqrt(squared), 1.0f);
-        const Specular s = specular_at(fresnel_dielectric(cosine, index()), cosine);
+        const float length = std::sqrt(squared);
+        const float cos_o = std::min(o / length, 1.0f), cos_i = std::min(i / length, 1.0f);
+        // Seen from the thinner medium, where it cannot be total, reflection keeps its digits at grazing angles.
+        const FresnelDielectric thinner =
+            fresnel_dielectric(relative > 1 ? cos_o : cos_i, relative > 1 ? relative : 1 / relative);
+        const Specular s = specular_at({thinner.reflectance, -side * cos_i, relative}, side * cos_o);
         const Microfacets ggx = facets();
         const float density = ggx.distribution(half) / ggx.smith_denominator(side * wo) * (o / squared) * (i / squared);
         const float compressed = square(relative) * density;

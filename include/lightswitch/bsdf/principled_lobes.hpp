@@ -10,7 +10,7 @@
 
 namespace lightswitch {
 
-/// The facets of a `rough`ness: alpha is its square, larger along x and smaller along y by up to the fourth root of 10
+/// The facets of a `rough`ness: alpha is its square, larger along x and smaller along y by up to sqrt(10)
 /// as `anisotropic` goes from 0 to 1 (Burley 2012, section 5.4), and not below 0.001.
 inline Microfacets principled_microfacets(float rough, float anisotropic) {
     const float alpha = rough * rough;
@@ -25,7 +25,7 @@ inline Microfacets principled_microfacets(float rough, float anisotropic) {
 }
 
 /// The weight for a boundary that was met from the front: of the angle in the thinner medium, which is the refracted
-/// one when the medium behind is the thinner one (Burley 2015, section 5.1).
+/// one when the medium behind is the thinner one.
 inline float schlick_weight(const FresnelDielectric& fresnel, float cosine) {
     return schlick_weight(fresnel.eta > 1 ? cosine : std::abs(fresnel.cos_t));
 }
@@ -42,7 +42,7 @@ inline Rgb tint_of(const Rgb& color) {
 
 /// Disney's diffuse reflection over Lambert's: darker at grazing angles when smooth, brighter towards the light when
 /// rough (Burley 2012, section 5.3), and mixed by `flatness` with an imitation of subsurface scattering after Hanrahan
-/// and Krueger (Burley 2015, section 2.1). Cosines are above 0; `cos_half` is that of `wo` and the half vector.
+/// and Krueger (Burley 2015). Cosines are above 0; `cos_half` is that of `wo` and the half vector.
 inline float principled_diffuse(float cos_o, float cos_i, float cos_half, float rough, float flatness) {
     const float o = schlick_weight(cos_o), i = schlick_weight(cos_i);
     const float retro = 2 * rough * cos_half * cos_half;
@@ -55,12 +55,10 @@ inline float principled_diffuse(float cos_o, float cos_i, float cos_half, float 
     return diffuse + flatness * (flat - diffuse);
 }
 
-/// The sheen of cloth: light that grazes the half vector's plane, white or tinted by the base colour (Burley 2012,
-/// section 5.5).
-inline Rgb principled_sheen(float cos_half, const Rgb& base_color, float sheen, float sheen_tint) {
-    const float strength = sheen * schlick_weight(cos_half);
-    if (sheen_tint == 0) return Rgb(strength);
-    return strength * (Rgb(1) + sheen_tint * (tint_of(base_color) - Rgb(1)));
+/// The colour of sheen: white, or the tint of the base colour.
+inline Rgb sheen_color(const Rgb& base_color, float sheen, float sheen_tint) {
+    if (sheen_tint == 0) return Rgb(sheen);
+    return sheen * (Rgb(1) + sheen_tint * (tint_of(base_color) - Rgb(1)));
 }
 
 /// The layer of clear coat: normals with the long tails of GTR1 (Burley 2012, appendix B.2) for an alpha from 0.1, dull,

@@ -7,7 +7,7 @@
 namespace lightswitch {
 
 /// Disney's model for sheets that let light through and are too thin to bend it, the same from both sides: leaves,
-/// paper, panes (Burley, "Extending the Disney BRDF to a BSDF with Integrated Subsurface Scattering", 2015, section 5.3),
+/// paper, panes (Burley, "Extending the Disney BRDF to a BSDF with Integrated Subsurface Scattering", 2015),
 /// with the meaning of Mitsuba 3.9.1's `principledthin`. Diffuse reflection and transmission, sheen, and reflection and
 /// transmission by GGX facets, where what is transmitted is reflected and then mirrored to the other side.
 ///
@@ -58,7 +58,8 @@ struct PrincipledThin {
                 if (share > 0) {
                     v.value +=
                         share * inv_pi * principled_diffuse(o.z, i.z, cos_half, roughness, flatness) * base_color;
-                    if (sheen > 0) v.value += share * principled_sheen(cos_half, base_color, sheen, sheen_tint);
+                    if (sheen > 0)
+                        v.value += share * schlick_weight(cos_half) * sheen_color(base_color, sheen, sheen_tint);
                 }
             } else {
                 v.value += (1 - spec_trans) * 0.5f * diff_trans * inv_pi * base_color;
@@ -138,7 +139,8 @@ private:
         const float base = max_component(base_color);
         if (spec_trans < 1) {
             const float through = 0.5f * diff_trans;
-            lobes.diffuse = (1 - spec_trans) * (1 - through) * (base + 0.3f * sheen);
+            const float cloth = sheen > 0 ? 0.3f * max_component(sheen_color(base_color, sheen, sheen_tint)) : 0;
+            lobes.diffuse = (1 - spec_trans) * (1 - through) * (base + cloth);
             lobes.diffuse_transmitted = (1 - spec_trans) * through * base;
         }
         if (spec_trans > 0) {
