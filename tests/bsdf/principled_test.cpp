@@ -166,13 +166,12 @@ TEST_CASE("principled: energy") {
     }
     // Facets alone never gain: what they do not reflect they refract, and some is lost to single scattering.
     for (const double cosine : cosines)
-        for (const float roughness : {0.5f, 0.7f, 1.0f}) {
-            const Principled glass{.base_color = Rgb(1), .roughness = roughness, .spec_trans = 1};
+        for (const float rough : {0.5f, 0.7f, 1.0f}) {
+            const Principled glass{.base_color = Rgb(1), .roughness = rough, .spec_trans = 1};
             Principled lens = glass;
             lens.eta = 1 / glass.eta;
-            const double white =
-                test::check_albedo_of_samples(Principled{.base_color = Rgb(1), .roughness = roughness, .metallic = 1},
-                                              direction(std::abs(cosine)), 101);
+            const double white = test::check_albedo_of_samples(
+                Principled{.base_color = Rgb(1), .roughness = rough, .metallic = 1}, direction(std::abs(cosine)), 101);
             CHECK(white <= 1);
             // Radiance is brighter by eta^2 at most in the denser medium, which is where the path comes from.
             CHECK(test::check_albedo_of_samples(glass, direction(cosine), 102) <= (cosine > 0 ? 1 : 2.25));
@@ -198,6 +197,22 @@ TEST_CASE("principled: energy") {
     // The default keeps below 1: half of the light, and a highlight.
     for (const double cosine : {1.0, 0.5, 0.1})
         CHECK(test::check_albedo_of_samples(Principled{}, direction(cosine), 107) < 1);
+}
+
+TEST_CASE("principled: an index of refraction next to 1 lets through all that is not masked") {
+    for (const float eta : {1.0f, 1.0000001f, 0.9999999f, 1.00001f, 0.9999f, 1.001f})
+        for (const double cosine : {0.9, -0.5}) {
+            CAPTURE(eta);
+            CAPTURE(cosine);
+            const Principled glass{.base_color = Rgb(1), .roughness = 1, .spec_trans = 1, .eta = eta};
+            test::Random random(16);
+            double sum = 0;
+            for (int n = 0; n < 10000; ++n)
+                if (const auto s = glass.sample(direction(cosine), random.next_3d(), Transport::importance))
+                    sum += double(s->weight.y);
+            const double z = std::abs(cosine);
+            CHECK(sum / 10000 == relative(2 * z / (1 + z), 0.01));
+        }
 }
 
 TEST_CASE("principled: from behind there is glass alone") {

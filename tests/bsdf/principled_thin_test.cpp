@@ -97,10 +97,10 @@ TEST_CASE("principled thin: energy") {
     }
     // White panes never gain, nor do diffuse ones that let all light through.
     for (const double cosine : {1.0, 0.5, 0.1})
-        for (const float roughness : {0.6f, 0.8f, 1.0f}) {
-            const PrincipledThin pane{.base_color = Rgb(1), .roughness = roughness, .spec_trans = 1};
+        for (const float rough : {0.6f, 0.8f, 1.0f}) {
+            const PrincipledThin pane{.base_color = Rgb(1), .roughness = rough, .spec_trans = 1};
             CHECK(test::check_albedo_of_samples(pane, direction(cosine), 101) <= 1);
-            const PrincipledThin paper{.base_color = Rgb(1), .roughness = roughness, .diff_trans = 2};
+            const PrincipledThin paper{.base_color = Rgb(1), .roughness = rough, .diff_trans = 2};
             CHECK(test::check_albedo_of_samples(paper, direction(cosine), 102) == relative(1, 1e-4));
         }
     // Diffuse reflection from rough white gains towards grazing angles, and more with sheen: 1.54 and 1.62 are the most
@@ -129,7 +129,9 @@ TEST_CASE("principled thin: extremes") {
     }
     for (const float eta : {1.0f, 1.0000001f, 1e-3f, 1e3f}) {
         CAPTURE(eta);
-        test::check_extremes(PrincipledThin{.roughness = 1, .anisotropic = 1, .spec_trans = 0.5f, .eta = eta}, 12);
+        for (const float anisotropic : {0.0f, 1.0f})
+            test::check_extremes(
+                PrincipledThin{.roughness = 1, .anisotropic = anisotropic, .spec_trans = 0.5f, .eta = eta}, 12);
     }
     // A tint's brightest component over its luminance.
     test::check_extremes(
@@ -137,6 +139,16 @@ TEST_CASE("principled thin: extremes") {
     // The imitation of subsurface scattering, of which Burley's formula has a pole where both directions graze.
     test::check_extremes(PrincipledThin{.base_color = Rgb(1), .roughness = 1, .flatness = 1}, infinity);
     test::check_extremes(PrincipledThin{.base_color = Rgb(0), .spec_trans = 0.5f, .spec_tint = 1, .sheen = 1}, 12);
+}
+
+TEST_CASE("principled thin: what is seen through a pane is blurred up to an alpha of 100") {
+    const Vec3 up(0, 0, 1);
+    for (const float eta : {20.0f, 100.0f, 1000.0f}) {
+        const PrincipledThin pane{.base_color = Rgb(1), .roughness = 1, .spec_trans = 1, .eta = eta};
+        const double through = 4 * double(eta) / std::pow(1 + double(eta), 2);
+        CHECK(pane.evaluate(up, -up, Transport::radiance).value.y ==
+              relative(through / (4 * 1e4 * std::acos(-1.0)), 1e-3));
+    }
 }
 
 TEST_CASE("principled thin: impossible parameters are explained") {

@@ -11,8 +11,9 @@ namespace lightswitch {
 /// reflection with an imitation of subsurface scattering, sheen, GGX reflection and refraction, and a clear coat. From
 /// behind there is only the refracting part: nothing of it, and the surface is black.
 ///
-/// Made to be handled by artists: it gains energy where sheen, clear coat or a saturated `spec_tint` are strong
-/// (tests/bsdf/principled_test.cpp says how much), and loses some where it is rough.
+/// Made to be handled by artists, lobes do not know of each other: bright diffuse colours gain energy from the
+/// highlight, from sheen and the clear coat, saturated ones more from tints (tests/bsdf/principled_test.cpp says how
+/// much). Rough facets lose some.
 ///
 /// `Principled` refracts, so it can have no `TwoSided` around it; `OpaquePrincipled` is the same without `spec_trans`,
 /// and can.
@@ -94,8 +95,8 @@ struct PrincipledModel {
 
     std::string problem() const;
 
-    /// Metal and glass have no diffuse term; the highlight has Blinn's exponent for the same roughness, 2 / alpha^2 - 2,
-    /// kept within 1 to 1000. The shape of glass is kept visible as for `Dielectric`.
+    /// Metal has no diffuse term; the shape of glass is kept visible as for `Dielectric`. The highlight has Blinn's
+    /// exponent for the same roughness, 2 / alpha^2 - 2, kept within 1 to 1000.
     PhongTerms phong() const {
         const float alpha = roughness * roughness;
         const Specular s = specular_at(fresnel_dielectric(1, index()), 1);
@@ -126,7 +127,8 @@ private:
         return refracting() > 0 && std::abs(index - 1) < 1e-4f ? 1 + std::copysign(1e-4f, index - 1) : index;
     }
 
-    /// For facets met under the signed `cosine`. In front, metal and tinted reflection are Schlick's, the rest is exact.
+    /// For facets met under the signed `cosine`. In front, metal and tinted reflection are Schlick's, the rest is
+    /// exact.
     Specular specular_at(const FresnelDielectric& fresnel, float cosine) const {
         const float exact = fresnel.reflectance;
         Specular s{Rgb(0), Rgb(0), 1};
@@ -151,8 +153,8 @@ private:
         return s;
     }
 
-    /// By what each lobe would reflect if facets lay flat, or a little more. The least shares bound the weights of
-    /// samples where facets at another angle reflect much more.
+    /// By what each lobe would reflect if facets lay flat. The least share is for rough facets, of which those that are
+    /// grazed reflect much more.
     Lobes lobes_of(float cos_o) const {
         if (cos_o < 0) return {0, 0, 1};
         float facets_share = 0;
@@ -195,6 +197,7 @@ private:
             if (diffusing() > 0)
                 v.value +=
                     diffusing() * inv_pi * principled_diffuse(wo.z, wi.z, cos_half, roughness, flatness) * base_color;
+            // Mitsuba's scalar variants, not its others, have no sheen where `spec_trans` is exactly 1.
             if (sheen > 0)
                 v.value += (1 - metallic) * schlick_weight(cos_half) * sheen_color(base_color, sheen, sheen_tint);
             v.pdf.value += lobes.diffuse * cosine_hemisphere_pdf(wi.z).value;

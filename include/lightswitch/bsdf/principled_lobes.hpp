@@ -33,8 +33,8 @@ inline float schlick_weight(const FresnelDielectric& fresnel, float cosine) {
 /// Schlick's reflectance, from `normal` at normal incidence to 1.
 inline Rgb schlick(const Rgb& normal, float weight) { return normal + (Rgb(1) - normal) * weight; }
 
-/// The hue and saturation of a colour: brought to luminance 1; white for black. In a saturated blue, the fourth digit of
-/// the luminance's weights shows, hence Mitsuba's own.
+/// The hue and saturation of a colour: brought to luminance 1; white for black. In a saturated blue, the fourth digit
+/// of the luminance's weights shows, hence Mitsuba's own.
 inline Rgb tint_of(const Rgb& color) {
     const float y = dot(color, Rgb(0.212671f, 0.71516f, 0.072169f));
     return y > 0 ? color / y : Rgb(1);
@@ -42,7 +42,8 @@ inline Rgb tint_of(const Rgb& color) {
 
 /// Disney's diffuse reflection over Lambert's: darker at grazing angles when smooth, brighter towards the light when
 /// rough (Burley 2012, section 5.3), and mixed by `flatness` with an imitation of subsurface scattering after Hanrahan
-/// and Krueger (Burley 2015). Cosines are above 0; `cos_half` is that of `wo` and the half vector.
+/// and Krueger (Burley 2015). Cosines are above 0, and so is their product;
+/// `cos_half` is that of `wo` and the half vector.
 inline float principled_diffuse(float cos_o, float cos_i, float cos_half, float rough, float flatness) {
     const float o = schlick_weight(cos_o), i = schlick_weight(cos_i);
     const float retro = 2 * rough * cos_half * cos_half;
@@ -50,8 +51,7 @@ inline float principled_diffuse(float cos_o, float cos_i, float cos_half, float 
     if (flatness == 0) return diffuse;
     const float grazing = 0.5f * retro - 1;
     const float shape = (1 + grazing * o) * (1 + grazing * i);
-    // The sum of cosines can be so small that its reciprocal is none.
-    const float flat = 1.25f * (shape * (1 / std::max(cos_o + cos_i, 1e-30f) - 0.5f) + 0.5f);
+    const float flat = 1.25f * (shape * (1 / (cos_o + cos_i) - 0.5f) + 0.5f);
     return diffuse + flatness * (flat - diffuse);
 }
 
@@ -61,8 +61,8 @@ inline Rgb sheen_color(const Rgb& base_color, float sheen, float sheen_tint) {
     return sheen * (Rgb(1) + sheen_tint * (tint_of(base_color) - Rgb(1)));
 }
 
-/// The layer of clear coat: normals with the long tails of GTR1 (Burley 2012, appendix B.2) for an alpha from 0.1, dull,
-/// to 0.001, glossy.
+/// The layer of clear coat: normals with the long tails of GTR1 (Burley 2012, appendix B.2) for an alpha from 0.1,
+/// dull, to 0.001, glossy.
 class Gtr1 {
 public:
     explicit Gtr1(float gloss) : alpha_squared_(square(0.1f + gloss * (0.001f - 0.1f))) {}

@@ -11,8 +11,8 @@ namespace lightswitch {
 /// with the meaning of Mitsuba 3.9.1's `principledthin`. Diffuse reflection and transmission, sheen, and reflection and
 /// transmission by GGX facets, where what is transmitted is reflected and then mirrored to the other side.
 ///
-/// Made to be handled by artists: it gains energy where sheen or a saturated `spec_tint` are strong
-/// (tests/bsdf/principled_thin_test.cpp says how much).
+/// Made to be handled by artists, lobes do not know of each other: bright rough surfaces gain energy, with sheen or
+/// saturated tints more of it (tests/bsdf/principled_thin_test.cpp says how much).
 struct PrincipledThin {
     static constexpr bool specular = false;
     static constexpr bool transmits = true;
@@ -28,9 +28,9 @@ struct PrincipledThin {
     float flatness = 0;      ///< mixes diffuse reflection with an imitation of subsurface scattering
     float diff_trans = 0;    ///< from diffuse reflection, 0, to diffuse transmission, 2
 
-    /// Reciprocal but for one thing: Mitsuba drops specular transmission when the direction where the path goes is,
-    /// before it is mirrored, on the wrong side of the half vector's mirror image. For importance the other direction is
-    /// asked, so that paths from both ends see the same surface.
+    /// Reciprocal but for one thing: Mitsuba drops specular transmission when the direction where the path goes is in
+    /// front of the facet, as it may be when it grazes the sheet. For importance the other direction is asked, so that
+    /// paths from both ends see the same surface.
     BsdfValue evaluate(const Vec3& wo, const Vec3& wi, Transport transport) const {
         const float sides = wo.z * wi.z;
         if (!(sides > 0 || sides < 0)) return {};
@@ -132,8 +132,8 @@ private:
         return {spec_trans * reflectance, spec_trans * (1 - fresnel.reflectance) * base_color};
     }
 
-    /// By what each lobe would reflect or transmit if facets lay flat, or a little more. The least shares bound the weights
-    /// of samples where facets at another angle do much more.
+    /// By what each lobe would reflect or transmit if facets lay flat, or a little more. The least shares bound the
+    /// weights of samples where facets at another angle do much more.
     Lobes lobes_of(float cos_o) const {
         Lobes lobes{};
         const float base = max_component(base_color);
