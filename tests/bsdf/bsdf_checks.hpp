@@ -32,30 +32,42 @@ inline SphereCells cells_for(const Vec3& wo, double alpha) {
 }
 
 /// `sample` follows the density of `evaluate`, whose integral is the probability that `sample` returns a direction.
+/// With a `side`, 1 or -1, only directions there count.
 template <Bsdf B>
-void check_density(const B& bsdf, const Vec3& wo, double alpha, double level, std::uint32_t seed) {
+void check_density_in(const SphereCells& cells, const B& bsdf, const Vec3& wo, double level, std::uint32_t seed,
+                      float side = 0) {
     const auto sample = [&](const Vec3& u) -> std::optional<Vec3> {
         const auto s = bsdf.sample(wo, u, Transport::radiance);
-        return s ? std::optional(s->wi) : std::nullopt;
+        return s && s->wi.z * side >= 0 ? std::optional(s->wi) : std::nullopt;
     };
-    const auto pdf = [&](const Vec3& wi) { return double(bsdf.evaluate(wo, wi, Transport::radiance).pdf.value); };
-    const auto result = chi_square_sphere(sample, pdf, cells_for(wo, alpha), 200000, seed);
+    const auto pdf = [&](const Vec3& wi) {
+        return wi.z * side < 0 ? 0 : double(bsdf.evaluate(wo, wi, Transport::radiance).pdf.value);
+    };
+    const auto result = chi_square_sphere(sample, pdf, cells, 200000, seed);
     CAPTURE(wo.z);
-    CAPTURE(alpha);
+    CAPTURE(side);
     CAPTURE(result.chi_square);
     CHECK(result.chi_square.p_value > level);
     CHECK(result.chi_square.degrees_of_freedom > 50);
     CHECK(result.integral <= 1.001);  // the quadrature is good to 5e-4
 }
 
+/// The same for a lobe of the roughness `alpha` around the mirror direction.
+template <Bsdf B>
+void check_density(const B& bsdf, const Vec3& wo, double alpha, double level, std::uint32_t seed) {
+    CAPTURE(alpha);
+    check_density_in(cells_for(wo, alpha), bsdf, wo, level, seed);
+}
+
 /// The albedo by sampling is at most 1 and is that by quadrature of `evaluate`; returns it.
 template <Bsdf B>
-double check_albedo(const B& bsdf, const Vec3& wo, double alpha, std::uint32_t seed) {
+double check_albedo(const B& bsdf, const Vec3& wo, double alpha, std::uint32_t seed,
+                    Transport transport = Transport::radiance) {
     constexpr int samples = 100000;
     Random random(seed);
     double sum = 0, squares = 0;
     for (int i = 0; i < samples; ++i) {
-        const auto s = bsdf.sample(wo, random.next_3d(), Transport::radiance);
+        const auto s = bsdf.sample(wo, random.next_3d(), transport);
         const double w = s ? double(s->weight.y) : 0;
         sum += w;
         squares += w * w;
@@ -64,9 +76,8 @@ double check_albedo(const B& bsdf, const Vec3& wo, double alpha, std::uint32_t s
     const double error = std::sqrt(std::max(0.0, squares / samples - mean * mean) / samples);
     SphereCells cells = cells_for(wo, alpha);
     cells.rings = cells.sectors = 10;
-    const auto parts = cells.integrals([&](const Vec3& wi) {
-        return double(bsdf.evaluate(wo, wi, Transport::radiance).value.y) * std::abs(double(wi.z));
-    });
+    const auto parts = cells.integrals(
+        [&](const Vec3& wi) { return double(bsdf.evaluate(wo, wi, transport).value.y) * std::abs(double(wi.z)); });
     const double quadrature = std::accumulate(parts.begin(), parts.end(), 0.0);
     CAPTURE(wo.z);
     CAPTURE(alpha);
@@ -106,6 +117,22 @@ void check_reciprocity(const B& bsdf) {
                   ba = bsdf.evaluate(b, a, Transport::radiance).value;
         for (int c = 0; c < 3; ++c)
             worst = std::max(worst, std::abs(double(ab[c]) - double(ba[c])) / (1e-6 + double(ab[c])));
+    }
+    CHECK(worst < 1e-5);
+}
+
+/// What radiance sees one way, importance sees the other way (Veach 1997, section 5.2): f(a, b) = f*(b, a), to 1e-5 of
+/// the value and of `scale`, by which rounding is measured where facets are seen edge-on.
+template <Bsdf B>
+void check_adjoint(const B& bsdf, double scale = 0.1) {
+    Random random(10);
+    double worst = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const Vec3 a = uniform_sphere(random.next_2d()), b = uniform_sphere(random.next_2d());
+        const Rgb ab = bsdf.evaluate(a, b, Transport::radiance).value,
+                  ba = bsdf.evaluate(b, a, Transport::importance).value;
+        for (int c = 0; c < 3; ++c)
+            worst = std::max(worst, std::abs(double(ab[c]) - double(ba[c])) / (scale + double(ab[c])));
     }
     CHECK(worst < 1e-5);
 }

@@ -1,17 +1,19 @@
 #include <lightswitch/bsdf/conductor.hpp>
 #include <lightswitch/bsdf/dielectric.hpp>
+#include <lightswitch/bsdf/thin_dielectric.hpp>
 
 #include "../support/relative.hpp"
 #include "bsdf_checks.hpp"
+#include "mitsuba_values.hpp"
 
 using namespace lightswitch;
 using test::direction;
 using test::mirrored;
 using test::relative;
 
-static_assert(Bsdf<Conductor> && Bsdf<Dielectric>);
-static_assert(Conductor::specular && Dielectric::specular);
-static_assert(transmits<Dielectric> && !transmits<Conductor>);
+static_assert(Bsdf<Conductor> && Bsdf<Dielectric> && Bsdf<ThinDielectric>);
+static_assert(Conductor::specular && Dielectric::specular && ThinDielectric::specular);
+static_assert(transmits<Dielectric> && transmits<ThinDielectric> && !transmits<Conductor>);
 
 namespace {
 const Conductor silver{.eta = {0.155f, 0.117f, 0.138f}, .k = {4.83f, 3.12f, 2.15f}, .reflectance = {0.9f, 0.8f, 0.7f}};
@@ -106,7 +108,53 @@ TEST_CASE("dielectric: radiance is scaled by 1 / eta^2, importance is not, and a
     CHECK(is_black(glass.evaluate(wo, in->wi, Transport::radiance).value));
 }
 
+TEST_CASE("thin dielectric: samples are Mitsuba's") {
+    const auto models = test::mitsuba_models("thindielectric");
+    CHECK(models.size() == 3);
+    int reflected = 0;
+    for (const auto& model : models) {
+        const ThinDielectric pane{.eta = model.eta(),
+                                  .reflectance = model.color("specular_reflectance"),
+                                  .transmittance = model.color("specular_transmittance")};
+        for (const auto& row : model.sampled) {
+            CAPTURE(row.wo.z);
+            CAPTURE(row.u);
+            const auto s = pane.sample(row.wo, Vec3(row.u, 0.5f, 0.5f), Transport::radiance);
+            REQUIRE(s);
+            CHECK(s->specular);
+            CHECK(s->wi == row.wi);
+            CHECK(s->weight == row.weight);
+            CHECK(s->eta == row.eta);
+            reflected += row.wi.z * row.wo.z > 0 ? 1 : 0;
+        }
+    }
+    CHECK(reflected >= 3);
+}
+
+TEST_CASE("thin dielectric: the reflectance is the sum over all ways between the faces") {
+    for (const float eta : {1.0f, 1.0001f, 1.5f, 2.4f, 0.7f})
+        for (const double cosine : {1.0, 0.6, 0.05, -0.3}) {
+            CAPTURE(eta);
+            CAPTURE(cosine);
+            const Vec3 wo = direction(cosine);
+            const double face = double(fresnel_dielectric(std::abs(wo.z), eta).reflectance);
+            double sum = face, inside = (1 - face) * (1 - face) * face;
+            for (int bounce = 0; bounce < 1000; ++bounce, inside *= face * face) sum += inside;
+            if (face == 1) sum = 1;
+            const ThinDielectric pane{.eta = eta, .reflectance = Rgb(0.9f), .transmittance = Rgb(0.4f)};
+            const auto at = [&](double u) { return pane.sample(wo, Vec3(float(u), 0, 0), Transport::importance); };
+            if (sum > 1e-5) CHECK(at(sum * (1 - 1e-5))->wi == mirrored(wo));
+            if (sum < 1 - 1e-6) CHECK(at(sum * (1 + 1e-5) + 1e-9)->wi == -wo);
+            if (sum > 1e-5) CHECK(at(0)->weight == Rgb(0.9f));
+            if (sum < 1 - 1e-6) CHECK(at(1 - 0x1p-24)->weight == Rgb(0.4f));
+            CHECK(is_black(pane.evaluate(wo, -wo, Transport::radiance).value));
+        }
+    CHECK_FALSE(ThinDielectric{}.sample(Vec3(1, 0, 0), Vec3(0.5f), Transport::radiance));
+}
+
 TEST_CASE("specular models: extremes") {
+    for (const float eta : {1e-3f, 0.5f, 1.0f, 1.0000001f, 1.5f, 1e3f})
+        test::check_extremes(ThinDielectric{.eta = eta});
     test::check_extremes(Conductor{});
     test::check_extremes(silver, 0.9f);
     test::check_extremes(Dielectric{}, 2.25f);
@@ -124,6 +172,11 @@ TEST_CASE("specular models: impossible parameters are explained") {
     CHECK(Conductor{.reflectance = Rgb(2)}.problem().find("specular_reflectance has") == 0);
     CHECK(Dielectric{}.problem() == "");
     for (const float eta : {0.0f, -1.5f, infinity, NAN}) CHECK(Dielectric{.eta = eta}.problem().find("eta is") == 0);
+    CHECK(ThinDielectric{}.problem() == "");
+    for (const float eta : {0.0f, -1.5f, infinity, NAN})
+        CHECK(ThinDielectric{.eta = eta}.problem().find("eta is") == 0);
+    CHECK(ThinDielectric{.reflectance = Rgb(0, 0, 1.1f)}.problem().find("specular_reflectance has") == 0);
+    CHECK(ThinDielectric{.transmittance = Rgb(-1, 0, 0)}.problem().find("specular_transmittance has") == 0);
     CHECK(Dielectric{.reflectance = Rgb(0, 0, 1.1f)}.problem().find("specular_reflectance has") == 0);
     CHECK(Dielectric{.transmittance = Rgb(-1, 0, 0)}.problem().find("specular_transmittance has") == 0);
 }
@@ -132,6 +185,7 @@ TEST_CASE("specular models: Phong terms") {
     CHECK(Conductor{}.phong().specular == Rgb(1));
     CHECK(Conductor{}.phong().diffuse == Rgb(0));
     CHECK(silver.phong().specular.x == relative(0.9f * fresnel_conductor(1, 0.155f, 4.83f), 1e-5));
+    CHECK(ThinDielectric{.reflectance = Rgb(0.5f)}.phong().specular == Rgb(0.25f));
     const PhongTerms glass = Dielectric{}.phong();
     CHECK((max_component(glass.diffuse) < 0.2f && max_component(glass.specular) > 0.2f && glass.shininess > 100));
 }

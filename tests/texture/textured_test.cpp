@@ -123,6 +123,18 @@ TEST_CASE("methods agree about textures, and a texture that is turned over is fo
     CHECK(verify(estimator(turned, PathTracerNee{}), estimator(scene, PathTracerNee{}), options).disagrees());
 }
 
+TEST_CASE("textured materials: a name that stands for two parameters gives both") {
+    const Texture rough(Checkerboard{Rgb(0.5f), Rgb(0.5f)});
+    const RoughConductor constants{.alpha_u = 0.2f, .alpha_v = 0.3f};
+    const auto with = [&](const char* name) {
+        const RoughConductor metal = Textured<RoughConductor>(constants).set(name, rough).at(Place{});
+        return Vec2(metal.alpha_u, metal.alpha_v);
+    };
+    CHECK(with("alpha") == Vec2(0.5f, 0.5f));
+    CHECK(with("alpha_u") == Vec2(0.5f, 0.3f));
+    CHECK(with("alpha_v") == Vec2(0.2f, 0.5f));
+}
+
 TEST_CASE("textured materials: what is impossible is said by the model") {
     const auto refusal = [](const LibraryBsdf& material) -> std::string {
         try {

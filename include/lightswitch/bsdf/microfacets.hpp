@@ -29,8 +29,8 @@ public:
 
     /// Density D of normals per solid angle and unit of macroscopic area. `m` may have any length but 0.
     float distribution(const Vec3& m) const {
-        const float ratio = alpha_y_ / alpha_x_;
-        const float slopes = m.x * m.x * ratio + m.y * m.y / ratio;
+        float slopes = m.x * m.x + m.y * m.y;
+        if (alpha_x_ != alpha_y_) slopes = m.x * m.x * (alpha_y_ / alpha_x_) + m.y * m.y * (alpha_x_ / alpha_y_);
         if (facets_ == Facets::ggx) {
             const float spread = (slopes + alpha_product_ * m.z * m.z) / length_squared(m);
             return alpha_product_ * inv_pi / (spread * spread);
@@ -48,12 +48,12 @@ public:
         if (facets_ == Facets::ggx) {
             // z^2 + (alpha_x x)^2 + (alpha_y y)^2 as a sum of what the smaller roughness does in all directions, and
             // what the larger one adds in its own.
-            const bool x_smoother = alpha_x_ < alpha_y_;
-            const float smaller = x_smoother ? alpha_x_ : alpha_y_, larger = x_smoother ? alpha_y_ : alpha_x_;
-            const float across = x_smoother ? v.y : v.x;
-            const float smaller_squared = smaller * smaller;
-            return v.z + std::sqrt(smaller_squared + (1 - smaller_squared) * v.z * v.z +
-                                   (larger - smaller) * (larger + smaller) * across * across);
+            const float smaller = std::min(alpha_x_, alpha_y_), smaller_squared = smaller * smaller;
+            float squared = smaller_squared + (1 - smaller_squared) * v.z * v.z;
+            if (alpha_x_ != alpha_y_)
+                squared +=
+                    std::abs(alpha_x_ - alpha_y_) * (alpha_x_ + alpha_y_) * square(alpha_x_ > alpha_y_ ? v.x : v.y);
+            return v.z + std::sqrt(squared);
         }
         const float reach = std::sqrt(square(alpha_x_ * v.x) + square(alpha_y_ * v.y));
         return beckmann_denominator(v.z, reach);
