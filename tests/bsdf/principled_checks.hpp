@@ -74,7 +74,7 @@ void check_values_against_mitsuba(const B& bsdf, const MitsubaModel& model, doub
 /// What importance sees from `a` to `b` is what radiance sees from `b` to `a` (Veach 1997, equation 3.17), and for two
 /// directions on one side the two are the same. Returns the share of pairs that are not black.
 template <Bsdf B>
-double check_adjoint(const B& bsdf, std::uint32_t seed) {
+double check_both_ways(const B& bsdf, std::uint32_t seed) {
     constexpr int pairs = 5000;
     Random random(seed);
     double worst = 0, worst_of_reflection = 0;
