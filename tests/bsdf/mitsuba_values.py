@@ -38,6 +38,25 @@ FACETS = [
 COLOURS = {"diffuse_reflectance": [0.8, 0.5, 0.1], "specular_reflectance": [0.9, 0.7, 0.4]}
 GREYS = {"diffuse_reflectance": [0.7, 0.7, 0.7], "specular_reflectance": [0.9, 0.9, 0.9]}
 
+
+def disney(seed, names, specular):
+    """Parameters of one of Disney's models at random. Of `names`, every other one is left out."""
+    random = np.random.default_rng(seed)
+    number = lambda low=0.0, high=1.0: round(float(random.uniform(low, high)), 3)
+    parameters = {"base_color": [number() for _ in range(3)], "roughness": number(), "rows": 4}
+    for name in names:
+        if random.random() < 0.5:
+            parameters[name] = number(high=2.0 if name == "diff_trans" else 1.0)
+    if specular and random.random() < 0.3:
+        parameters["specular"] = number()
+    elif random.random() < 0.8:
+        parameters["eta"] = number(0.5, 2.2)
+    return parameters
+
+
+COMMON = ("anisotropic", "spec_trans", "spec_tint", "sheen", "sheen_tint", "flatness")
+BLUE = [0.0, 0.0, 1.0]
+
 MODELS = {
     "plastic": [
         {"int_ior": int_ior, "ext_ior": ext_ior, "nonlinear": nonlinear, **(GREYS if nonlinear else COLOURS)}
@@ -63,6 +82,28 @@ MODELS = {
         {"int_ior": int_ior, "ext_ior": ext_ior, "rows": 0, "samples": 12, "specular_reflectance": [0.9, 0.8, 0.7],
          "specular_transmittance": [0.5, 0.6, 0.7]}
         for int_ior, ext_ior in ((1.5, 1.0), (1.0, 1.33), (2.4, 1.1))
+    ],
+    "principled": [{}] + [
+        {**disney([1, i], COMMON + ("metallic", "clearcoat", "clearcoat_gloss"), True),
+         "transport": "importance" if i % 4 == 0 else "radiance"}
+        for i in range(12)
+    ] + [
+        {"roughness": 0.0, "metallic": 0.5, "rows": 3},
+        {"roughness": 1.0, "anisotropic": 1.0, "clearcoat": 1.0, "clearcoat_gloss": 1.0, "eta": 1.3},
+        {"specular": 0.0, "metallic": 0.7, "clearcoat": 1.0, "flatness": 1.0},
+        {"specular": 0.0, "spec_trans": 0.7},
+        {"eta": 1.0, "spec_trans": 0.4, "roughness": 0.9},
+        {"base_color": BLUE, "eta": 0.7, "spec_tint": 1.0, "sheen": 1.0, "sheen_tint": 1.0, "spec_trans": 0.5},
+        {"base_color": [0.0, 0.0, 0.0], "spec_tint": 0.5, "sheen": 1.0, "sheen_tint": 1.0},
+        {"metallic": 1.0, "spec_trans": 1.0, "base_color": [0.9, 0.6, 0.2]},
+        {"spec_trans": 1.0, "roughness": 0.3, "base_color": [0.9, 0.6, 0.2]},
+    ],
+    "principledthin": [{}] + [disney([2, i], COMMON + ("diff_trans",), False) for i in range(12)] + [
+        {"spec_trans": 1.0, "roughness": 0.0, "rows": 3},
+        {"spec_trans": 1.0, "roughness": 1.0, "anisotropic": 1.0, "eta": 2.5},
+        {"spec_trans": 0.5, "spec_tint": 1.0, "eta": 1.0, "base_color": BLUE},
+        {"spec_trans": 0.5, "spec_tint": 0.7, "eta": 0.4, "sheen": 1.0, "sheen_tint": 1.0, "base_color": BLUE},
+        {"diff_trans": 2.0, "sheen": 1.0},
     ],
 }
 
@@ -110,7 +151,7 @@ def rows_of(bsdf, parameters, random):
         if number % 4 != 3 and not pdf > 0:
             continue
         number += 1
-        yield "e " + text(si.wi, wi, value, pdf)
+        yield "e " + text(si.wi, wi, value, np.nan_to_num(pdf))  # 0 / 0 where no lobe is sampled
     for _ in range(parameters.get("samples", 0)):
         si, u = seen_from(direction(random)), float(np.float32(random.random()))
         sample, weight = bsdf.sample(context, si, u, mi.Point2f(0.5, 0.5))
