@@ -8,10 +8,10 @@ using test::direction;
 using test::random_disney;
 using test::relative;
 
-static_assert(Bsdf<Principled> && Bsdf<OpaquePrincipled>);
-static_assert(transmits<Principled> && !transmits<OpaquePrincipled> && !Principled::specular);
+static_assert(Bsdf<Principled>);
+static_assert(transmits<Principled> && !Principled::specular);
 static_assert(sizeof(Principled) <= 64);
-static_assert(sizeof(TwoSided<OpaquePrincipled>) > 0);
+static_assert(sizeof(TwoSided<Principled>) > 0);
 
 namespace {
 
@@ -33,14 +33,7 @@ B of_table(const test::MitsubaModel& model) {
 TEST_CASE("principled: values agree with Mitsuba's") {
     const auto models = test::mitsuba_models("principled");
     CHECK(models.size() == 22);
-    int opaque = 0;
-    for (const auto& model : models) {
-        test::check_values_against_mitsuba(of_table<Principled>(model), model, 3e-4);
-        if (model.has("spec_trans")) continue;
-        ++opaque;
-        test::check_values_against_mitsuba(of_table<OpaquePrincipled>(model), model, 3e-4);
-    }
-    CHECK(opaque > 5);
+    for (const auto& model : models) test::check_values_against_mitsuba(of_table<Principled>(model), model, 3e-4);
 }
 
 TEST_CASE("principled: the index of refraction of `specular`") {
@@ -68,7 +61,7 @@ TEST_CASE("principled: sampling follows the density") {
         test::check_density(model, direction(cosine), 1, level, static_cast<std::uint32_t>(n) + 1);
     }
     for (const double cosine : {1.0, 0.5, 0.1}) {
-        test::check_density(OpaquePrincipled{.roughness = 0.25f, .metallic = 1}, direction(cosine), 0.0625, level, 101);
+        test::check_density(Principled{.roughness = 0.25f, .metallic = 1}, direction(cosine), 0.0625, level, 101);
         test::check_density(Principled{.roughness = 0.3f, .clearcoat = 1, .clearcoat_gloss = 0.3f}, direction(cosine),
                             0.07, level, 102);
     }
@@ -142,7 +135,9 @@ TEST_CASE("principled: reflection is reciprocal, refraction but for the index") 
     for (int n = 0; n < 40; ++n) {
         const auto model = random_disney<Principled>(random, 0.3f);
         CHECK(test::check_both_ways(model, static_cast<std::uint32_t>(n)) > (model.eta == 1 ? 0.0 : 0.2));
-        auto opaque = random_disney<OpaquePrincipled>(random, 0.3f);
+        auto opaque = random_disney<Principled>(random, 0.3f);
+        opaque.spec_trans = 0;
+        CHECK(!opaque.transmits_light());
         test::check_reciprocity(opaque);
     }
     // What enters is less bright by eta^2 for radiance, and only what enters.
@@ -266,7 +261,6 @@ TEST_CASE("principled: extremes") {
 
 TEST_CASE("principled: impossible parameters are explained") {
     CHECK(Principled{}.problem() == "");
-    CHECK(OpaquePrincipled{}.problem() == "");
     CHECK(Principled{.roughness = 0}.problem() == "");
     CHECK(Principled{.base_color = Rgb(0, 1.5f, 0)}.problem().find("base_color has a component of 1.5") == 0);
     for (const float bad : {-0.1f, 1.1f, infinity, NAN}) {
@@ -280,9 +274,7 @@ TEST_CASE("principled: impossible parameters are explained") {
             }
             CHECK(model.problem().find(std::string(parameter.name)) == 0);
         });
-        CHECK(OpaquePrincipled{.spec_trans = bad}.problem().find("spec_trans is") == 0);
     }
-    CHECK(OpaquePrincipled{.spec_trans = 0.5f}.problem().find("spec_trans is") == 0);
     CHECK(Principled{.eta = 0}.problem().find("eta is") == 0);
 }
 

@@ -45,6 +45,11 @@ struct RequireMaterial {
 
 }  // namespace detail
 
+/// The materials of a scene: surface models, or what gives one at every place.
+template <class... B>
+requires(detail::RequireMaterial<B>::value&&...) struct Bsdfs {
+};
+
 /// The surface model of a material.
 template <Material M>
 using model_of = typename detail::ModelOf<M>::type;

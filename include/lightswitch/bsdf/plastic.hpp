@@ -85,7 +85,7 @@ private:
 
 template <>
 inline constexpr auto parameters_of<Plastic> =
-    std::tuple{Parameter{"eta", &Plastic::eta, relative_index, false},
+    std::tuple{Parameter{"eta", &Plastic::eta, as_relative_index, false},
                Parameter{"diffuse_reflectance", &Plastic::diffuse_reflectance},
                Parameter{"specular_reflectance", &Plastic::specular_reflectance}};
 

@@ -15,18 +15,16 @@ namespace lightswitch {
 /// highlight, from sheen and the clear coat, saturated ones more from tints (tests/bsdf/principled_test.cpp says how
 /// much). Rough facets lose some.
 ///
-/// `Principled` refracts, so it can have no `TwoSided` around it; `OpaquePrincipled` is the same without `spec_trans`,
-/// and can.
-template <bool transmission>
-struct PrincipledModel {
+/// With `spec_trans` it lets light through and can have no `TwoSided` around it; without it can.
+struct Principled {
     static constexpr bool specular = false;
-    static constexpr bool transmits = transmission;
+    static constexpr bool transmits = true;
 
     Rgb base_color{0.5f};
     float roughness = 0.5f;     ///< square root of GGX's alpha, which is at least 0.001
     float anisotropic = 0;      ///< stretches highlights along x
     float metallic = 0;         ///< mixes with a metal whose reflectance is `base_color`
-    float spec_trans = 0;       ///< mixes what is no metal with glass; 0 in `OpaquePrincipled`
+    float spec_trans = 0;       ///< mixes what is no metal with glass
     float eta = 1.5f;           ///< index of refraction behind the surface over that in front of it
     float spec_tint = 0;        ///< tints reflection of what is no metal
     float sheen = 0;            ///< strength of the sheen of cloth
@@ -54,8 +52,7 @@ struct PrincipledModel {
         const float sides = wo.z * wi.z;
         if (wo.z < 0 && !(refracting() > 0)) return {};
         if (sides > 0) return wo.z > 0 ? front(wo, wi) : back(wo, wi);
-        if constexpr (transmits)
-            if (sides < 0 && refracting() > 0) return refraction(wo, wi, transport);
+        if (sides < 0 && refracting() > 0) return refraction(wo, wi, transport);
         return {};
     }
 
@@ -93,6 +90,8 @@ struct PrincipledModel {
         return BsdfSample{.wi = wi, .weight = v.value * (std::abs(wi.z) / v.pdf.value), .pdf = v.pdf, .eta = crossed};
     }
 
+    bool transmits_light() const { return refracting() > 0; }
+    bool isotropic() const { return anisotropic == 0; }
     std::string problem() const;
 
     /// Metal has no diffuse term; the shape of glass is kept visible as for `Dielectric`. The highlight has Blinn's
@@ -119,7 +118,7 @@ private:
 
     Microfacets facets() const { return principled_microfacets(roughness, anisotropic); }
     float diffusing() const { return (1 - metallic) * (1 - spec_trans); }
-    float refracting() const { return transmits ? (1 - metallic) * spec_trans : 0; }
+    float refracting() const { return (1 - metallic) * spec_trans; }
 
     /// Half vectors of refraction keep some digits only if the index is not too near to 1.
     float index() const {
@@ -241,32 +240,15 @@ private:
     }
 };
 
-/// The model with glass in it.
-using Principled = PrincipledModel<true>;
-/// The model without.
-using OpaquePrincipled = PrincipledModel<false>;
+template <>
+inline constexpr auto parameters_of<Principled> = std::tuple{
+    Parameter{"base_color", &Principled::base_color},   Parameter{"roughness", &Principled::roughness},
+    Parameter{"anisotropic", &Principled::anisotropic}, Parameter{"metallic", &Principled::metallic},
+    Parameter{"spec_trans", &Principled::spec_trans},   Parameter{"eta", &Principled::eta, as_relative_index, false},
+    Parameter{"spec_tint", &Principled::spec_tint},     Parameter{"sheen", &Principled::sheen},
+    Parameter{"sheen_tint", &Principled::sheen_tint},   Parameter{"flatness", &Principled::flatness},
+    Parameter{"clearcoat", &Principled::clearcoat},     Parameter{"clearcoat_gloss", &Principled::clearcoat_gloss}};
 
-template <bool transmission>
-inline constexpr auto parameters_of<PrincipledModel<transmission>> = [] {
-    using B = PrincipledModel<transmission>;
-    constexpr ParameterRange glass{.least = 0, .most = transmission ? 1.0f : 0.0f};
-    return std::tuple{Parameter{"base_color", &B::base_color},
-                      Parameter{"roughness", &B::roughness},
-                      Parameter{"anisotropic", &B::anisotropic},
-                      Parameter{"metallic", &B::metallic},
-                      Parameter{"spec_trans", &B::spec_trans, glass, transmission},
-                      Parameter{"eta", &B::eta, relative_index, false},
-                      Parameter{"spec_tint", &B::spec_tint},
-                      Parameter{"sheen", &B::sheen},
-                      Parameter{"sheen_tint", &B::sheen_tint},
-                      Parameter{"flatness", &B::flatness},
-                      Parameter{"clearcoat", &B::clearcoat},
-                      Parameter{"clearcoat_gloss", &B::clearcoat_gloss}};
-}();
-
-template <bool transmission>
-std::string PrincipledModel<transmission>::problem() const {
-    return parameter_problem(*this);
-}
+inline std::string Principled::problem() const { return parameter_problem(*this); }
 
 }  // namespace lightswitch

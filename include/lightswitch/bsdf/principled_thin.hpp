@@ -93,6 +93,7 @@ struct PrincipledThin {
         return BsdfSample{.wi = wi, .weight = v.value * (std::abs(wi.z) / v.pdf.value), .pdf = v.pdf};
     }
 
+    bool isotropic() const { return anisotropic == 0; }
     std::string problem() const;
 
     /// Light that is let through counts as diffuse; the highlight has Blinn's exponent for the same roughness,
@@ -161,7 +162,7 @@ inline constexpr auto parameters_of<PrincipledThin> =
                Parameter{"roughness", &PrincipledThin::roughness},
                Parameter{"anisotropic", &PrincipledThin::anisotropic},
                Parameter{"spec_trans", &PrincipledThin::spec_trans},
-               Parameter{"eta", &PrincipledThin::eta, relative_index},
+               Parameter{"eta", &PrincipledThin::eta, as_relative_index},
                Parameter{"spec_tint", &PrincipledThin::spec_tint},
                Parameter{"sheen", &PrincipledThin::sheen},
                Parameter{"sheen_tint", &PrincipledThin::sheen_tint},

@@ -127,7 +127,7 @@ private:
 inline const RoughCoat& rough_coat(Facets distribution, float alpha, float eta) {
     using Key = std::tuple<Facets, float, float>;
     static const RoughCoat black;
-    if (!roughness.contains(alpha) || !relative_index.contains(eta)) return black;
+    if (!as_roughness.contains(alpha) || !as_relative_index.contains(eta)) return black;
     const Key key{distribution, alpha, eta};
     thread_local std::pair<Key, const RoughCoat*> latest{};  // models are made one like the other
     if (latest.second && latest.first == key) return *latest.second;

@@ -68,8 +68,8 @@ private:
 
 template <>
 inline constexpr auto parameters_of<RoughPlastic> =
-    std::tuple{Parameter{"alpha", &RoughPlastic::alpha, roughness, false},
-               Parameter{"eta", &RoughPlastic::eta, relative_index, false},
+    std::tuple{Parameter{"alpha", &RoughPlastic::alpha, as_roughness, false},
+               Parameter{"eta", &RoughPlastic::eta, as_relative_index, false},
                Parameter{"diffuse_reflectance", &RoughPlastic::diffuse_reflectance},
                Parameter{"specular_reflectance", &RoughPlastic::specular_reflectance}};
 

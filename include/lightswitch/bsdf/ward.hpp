@@ -59,6 +59,7 @@ struct Ward {
         return detail::sample_of_all_lobes(*this, wo, 2 * dot(wo, half) / length_squared(half) * half - wo, transport);
     }
 
+    bool isotropic() const { return alpha_u == alpha_v; }
     std::string problem() const;
 
     PhongTerms phong() const {

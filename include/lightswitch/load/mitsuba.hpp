@@ -192,7 +192,7 @@ private:
             shape.emission = Rgb(1);
             shape.emission_texture = textures_.read(*texture);
         } else {
-            shape.emission = element.color("radiance", 1, XmlElement::Color::emission);
+            shape.emission = element.color("radiance", 1, SpectrumUse::emission);
         }
         element.finish();
     }
@@ -200,7 +200,7 @@ private:
     void read_emitter(pugi::xml_node node) {
         XmlElement element(file_, node);
         const auto to_world = element.transform("to_world");
-        const auto emission = [&](const char* name) { return element.color(name, 1, XmlElement::Color::emission); };
+        const auto emission = [&](const char* name) { return element.color(name, 1, SpectrumUse::emission); };
         if (element.type() == "point") {
             const auto position = element.vector("position");
             if (position && to_world) element.error("give either position or to_world");

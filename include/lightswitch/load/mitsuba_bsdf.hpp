@@ -2,6 +2,7 @@
 
 // Surface models in Mitsuba's scene files.
 
+#include <lightswitch/load/metals.hpp>
 #include <lightswitch/load/mitsuba_texture.hpp>
 
 namespace lightswitch::detail {
@@ -34,62 +35,158 @@ inline double read_index_of_refraction(XmlElement& element, const std::string& n
     return index;
 }
 
-/// `eta`, `k` and `specular_reflectance` of a metal.
-template <class Metal>
-void read_metal(XmlElement& element, Metal& metal) {
-    if (const auto material = element.text("material"); material && *material != "none")
-        fail(element.origin("material"),
-             "measured metals are not supported: give eta and k as <rgb> instead of " + quote(*material));
-    metal.eta = element.color("eta", 0);
-    metal.k = element.color("k", 1);
-    metal.reflectance = element.color("specular_reflectance", 1);
+/// `eta` of a model with two media, by Mitsuba's parameters and defaults.
+inline float read_relative_index(XmlElement& element, const std::string& inside, const std::string& outside = "air") {
+    const double index = read_index_of_refraction(element, "int_ior", inside);
+    return static_cast<float>(index / read_index_of_refraction(element, "ext_ior", outside));
 }
 
-inline RoughConductor read_rough_conductor(XmlElement& element) {
-    RoughConductor result;
-    read_metal(element, result);
-    // Mitsuba's default is beckmann, which would look different.
+/// The parameters of a model that are plain numbers and colours; what the file leaves out, and what a texture will give,
+/// stays as it is.
+template <class B>
+void read_parameters(XmlElement& element, B& model) {
+    for_each_parameter<B>([&](std::size_t, const auto& parameter) {
+        if (!parameter.varies) return;
+        const std::string name(parameter.name);
+        if (!element.has(name)) return;
+        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(model.*parameter.member)>, float>)
+            parameter.set(model, static_cast<float>(*element.number(name)));
+        else
+            parameter.set(model,
+                          element.color(name, Rgb(0),
+                                        name == "eta" || name == "k" ? SpectrumUse::index : SpectrumUse::reflectance));
+    });
+}
+
+/// A metal's name, instead of `eta` and `k`.
+template <class Metal>
+void read_metal_name(XmlElement& element, Metal& metal) {
+    const auto material = element.text("material");
+    if (!material || *material == "none") return;
+    if (element.has("eta") || element.has("k")) element.error("give either material, or eta and k");
+    const auto index = metal_by_name(*material);
+    if (!index) fail(element.origin("material"), "unknown metal " + quote(*material) + "; known are " + metal_names());
+    metal.eta = index->eta;
+    metal.k = index->k;
+}
+
+/// `distribution`, and `alpha` against `alpha_u` and `alpha_v`.
+template <class Rough>
+void read_facets(XmlElement& element, Rough& model) {
     const std::string distribution = lower_case(element.text("distribution").value_or("beckmann"));
-    if (distribution != "ggx")
-        element.error("the distribution is " + quote(distribution) +
-                      (element.has("distribution") ? "" : " by default") +
-                      ", but only \"ggx\" is supported: give <string name=\"distribution\" value=\"ggx\"/>");
+    if (distribution != "ggx" && distribution != "beckmann")
+        fail(element.origin("distribution"), quote(distribution) + " is neither \"beckmann\" nor \"ggx\"");
+    model.distribution = distribution == "ggx" ? Facets::ggx : Facets::beckmann;
     element.boolean("sample_visible", true);  // changes only the noise
-    const auto alpha = element.number("alpha"), alpha_u = element.number("alpha_u"),
-               alpha_v = element.number("alpha_v");
-    if (alpha_u.has_value() != alpha_v.has_value() || (alpha && alpha_u))
-        element.error("give either alpha, or both alpha_u and alpha_v");
-    if (alpha_u && *alpha_u != *alpha_v)
-        element.error("anisotropic roughness is not supported: alpha_u and alpha_v must be equal");
-    result.distribution = Facets::ggx;
-    result.alpha_u = result.alpha_v = static_cast<float>(alpha_u ? *alpha_u : alpha.value_or(0.1));
-    return result;
 }
 
 /// Reads a `<bsdf>` that is a surface model, with Mitsuba's defaults for what is left out.
-inline LibraryBsdf read_bsdf(XmlElement& element, TextureReader& textures) {
-    const auto finished = [&](const auto& bsdf) {
-        LibraryBsdf result = textures.with_textures(element, bsdf);
-        element.finish();
+class BsdfReader {
+public:
+    BsdfReader(XmlElement& element, TextureReader& textures) : element_(element), textures_(textures) {}
+
+    LibraryBsdf read() {
+        const std::string type = element_.type();
+        if (type == "diffuse") return finished(Lambert{});
+        if (type == "conductor") return metal(Conductor{});
+        if (type == "roughconductor") return metal(rough(RoughConductor{}));
+        if (type == "dielectric") return glass(Dielectric{}, "bk7");
+        if (type == "thindielectric") return glass(ThinDielectric{}, "bk7");
+        if (type == "roughdielectric") return glass(rough(RoughDielectric{}), "bk7");
+        if (type == "plastic") return plastic();
+        if (type == "roughplastic") return rough_plastic();
+        if (type == "principled") return principled();
+        if (type == "principledthin") {
+            ignore_rates({"spec_reflect_sampling_rate", "spec_trans_sampling_rate", "diffuse_trans_sampling_rate",
+                          "diffuse_reflect_sampling_rate", "diffuse_reflectance_sampling_rate"});
+            return finished(PrincipledThin{});
+        }
+        if (type == "roughdiffuse") {
+            element_.boolean("use_fast_approx", false);
+            return finished(RoughDiffuse{});
+        }
+        if (type == "phong") return finished(ModifiedPhong{});
+        if (type == "ward") return ward();
+        element_.unknown_type(
+            "diffuse, conductor, roughconductor, dielectric, roughdielectric, thindielectric, plastic, roughplastic, "
+            "principled, principledthin, roughdiffuse, phong, ward, twosided, mask, null, blendbsdf, bumpmap and "
+            "normalmap");
+    }
+
+private:
+    template <class B>
+    LibraryBsdf finished(B model) {
+        read_parameters(element_, model);
+        LibraryBsdf result = textures_.with_textures(element_, model);
+        element_.finish();
         return result;
-    };
-    if (element.type() == "diffuse") return finished(Lambert{.reflectance = element.color("reflectance", 0.5f)});
-    if (element.type() == "conductor") {
-        Conductor result;
-        read_metal(element, result);
-        return finished(result);
     }
-    if (element.type() == "roughconductor") return finished(read_rough_conductor(element));
-    if (element.type() == "dielectric") {
-        Dielectric result;
-        const double inside = read_index_of_refraction(element, "int_ior", "bk7");
-        result.eta = static_cast<float>(inside / read_index_of_refraction(element, "ext_ior", "air"));
-        result.reflectance = element.color("specular_reflectance", 1);
-        result.transmittance = element.color("specular_transmittance", 1);
-        return finished(result);
+    template <class B>
+    LibraryBsdf metal(B model) {
+        read_metal_name(element_, model);
+        return finished(model);
     }
-    element.unknown_type(
-        "diffuse, conductor, roughconductor, dielectric, twosided, mask, null, blendbsdf, bumpmap and normalmap");
-}
+    template <class B>
+    LibraryBsdf glass(B model, const char* inside) {
+        model.eta = read_relative_index(element_, inside);
+        return finished(model);
+    }
+    template <class B>
+    B rough(B model) {
+        read_facets(element_, model);
+        const bool u = given("alpha_u"), v = given("alpha_v");
+        if (u != v || (given("alpha") && u)) element_.error("give either alpha, or both alpha_u and alpha_v");
+        return model;
+    }
+    bool given(const std::string& name) const { return element_.has(name) || element_.has_object(name); }
+
+    LibraryBsdf plastic() {
+        Plastic model{.eta = read_relative_index(element_, "polypropylene")};
+        model.nonlinear = element_.boolean("nonlinear", false);
+        return finished(model);
+    }
+
+    LibraryBsdf rough_plastic() {
+        RoughPlastic facets;
+        read_facets(element_, facets);
+        const auto alpha = static_cast<float>(element_.number("alpha", 0.1));
+        if (!as_roughness.contains(alpha)) fail(element_.origin("alpha"), "must be above 0 and at most 1");
+        const float eta = read_relative_index(element_, "polypropylene");
+        if (!as_relative_index.contains(eta)) element_.error("the index of refraction is impossible");
+        RoughPlastic model{.distribution = facets.distribution, .alpha = alpha, .eta = eta};
+        model.nonlinear = element_.boolean("nonlinear", false);
+        return finished(model);
+    }
+
+    LibraryBsdf principled() {
+        ignore_rates({"main_specular_sampling_rate", "clearcoat_sampling_rate", "diffuse_reflectance_sampling_rate"});
+        Principled model;
+        const bool transmits = element_.has_object("spec_trans") || element_.number("spec_trans", 0) != 0;
+        const auto eta = element_.number("eta"), specular = element_.number("specular");
+        if (eta && specular) element_.error("give either eta or specular");
+        if (specular && !(*specular >= 0 && *specular <= 1)) fail(element_.origin("specular"), "must be from 0 to 1");
+        model.eta = eta ? Principled::eta_from_eta(static_cast<float>(*eta), transmits)
+                        : Principled::eta_from_specular(static_cast<float>(specular.value_or(0.5)), transmits);
+        return finished(model);
+    }
+
+    LibraryBsdf ward() {
+        static const std::map<std::string, WardVariant> variants{
+            {"ward", WardVariant::ward}, {"ward-duer", WardVariant::ward_duer}, {"balanced", WardVariant::balanced}};
+        const std::string variant = lower_case(element_.text("variant").value_or("balanced"));
+        const auto found = variants.find(variant);
+        if (found == variants.end())
+            fail(element_.origin("variant"), quote(variant) + " is none of ward, ward-duer and balanced");
+        return finished(Ward{.variant = found->second});
+    }
+
+    /// Parameters that only say how Mitsuba draws its samples.
+    void ignore_rates(std::initializer_list<const char*> names) {
+        for (const char* name : names) element_.number(name);
+    }
+
+    XmlElement& element_;
+    TextureReader& textures_;
+};
 
 }  // namespace lightswitch::detail

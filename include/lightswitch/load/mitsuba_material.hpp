@@ -70,7 +70,7 @@ private:
         }
         if (type == "normalmap")
             return finish_map(element, NormalMap{.inner = 0, .normals = textures_.texture(element, "normalmap")});
-        return scene_.add(read_bsdf(element, textures_), origin);
+        return scene_.add(BsdfReader(element, textures_).read(), origin);
     }
 
     std::size_t finish_map(XmlElement& element, auto map) {

@@ -4,6 +4,7 @@
 // asked for is an error, so that nothing in a file is ignored unseen.
 
 #include <lightswitch/core/math.hpp>
+#include <lightswitch/load/spectrum.hpp>
 #include <lightswitch/load/xml.hpp>
 #include <lightswitch/load/xml_transform.hpp>
 
@@ -26,6 +27,11 @@ public:
     }
 
     bool has(const std::string& name) const { return parameters_.contains(name); }
+    /// Whether there is an object of that name inside, such as a texture for a parameter.
+    bool has_object(const std::string& name) const {
+        return std::any_of(objects_.begin(), objects_.end(),
+                           [&](pugi::xml_node node) { return node.attribute("name").value() == name; });
+    }
     bool has_string(const std::string& name) const {
         return has(name) && std::string_view(parameters_.at(name).name()) == "string";
     }
@@ -43,10 +49,11 @@ public:
     std::optional<DVec3> vector(const std::string& name);
     std::optional<DMat4> transform(const std::string& name);
 
-    enum class Color { reflectance, emission };
-    /// A colour as Mitsuba's RGB variants see it: `<rgb>`, one number, or a `<spectrum>` of one value. The latter is
-    /// grey as a reflectance; as an emission it has the white of equal energy, which is not that of sRGB.
-    Rgb color(const std::string& name, float otherwise, Color use = Color::reflectance);
+    /// A colour as Mitsuba's RGB variants see it: `<rgb>`, one number, or a `<spectrum>` in any form.
+    Rgb color(const std::string& name, const Rgb& otherwise, SpectrumUse use = SpectrumUse::reflectance);
+    Rgb color(const std::string& name, float otherwise, SpectrumUse use = SpectrumUse::reflectance) {
+        return color(name, Rgb(otherwise), use);
+    }
 
     /// The `<texture>` inside that gives the parameter of that name, or the `<ref>` to one.
     std::optional<pugi::xml_node> texture(const std::string& name);
@@ -59,6 +66,9 @@ public:
 private:
     /// The parameter's element if it is there; throws when its tag is none of `tags`.
     pugi::xml_node find(const std::string& name, std::initializer_list<std::string_view> tags);
+    /// The colour of a `<spectrum>` by value or from a file, or of a type.
+    static Rgb read_spectrum(const XmlFile& file, pugi::xml_node node, SpectrumUse use);
+    Rgb spectrum_of_type(SpectrumUse use);
 
     const XmlFile& file_;
     pugi::xml_node node_;
@@ -81,11 +91,13 @@ inline XmlElement::XmlElement(const XmlFile& file, pugi::xml_node node) : file_(
             objects_.push_back(child);
             continue;
         }
-        if (values.contains(tag)) file.check_attributes(child, {"name", "value"});
+        const bool typed = tag == "spectrum" && child.attribute("type");
+        if (tag == "spectrum") file.check_attributes(child, {"name"}, {"value", "filename", "type", "id"});
+        else if (values.contains(tag)) file.check_attributes(child, {"name", "value"});
         else if (vectors.contains(tag)) file.check_attributes(child, {"name"}, {"value", "x", "y", "z"});
         else if (tag == "transform") file.check_attributes(child, {"name"});
         else fail(file.origin(child), "elements of this kind are not supported here");
-        if (tag != "transform") file.check_childless(child);
+        if (tag != "transform" && !typed) file.check_childless(child);
         if (!parameters_.emplace(child.attribute("name").value(), child).second)
             fail(file.origin(child), "the parameter is given twice");
     }
@@ -156,20 +168,58 @@ inline std::optional<DMat4> XmlElement::transform(const std::string& name) {
     return read_transform(file_, node);
 }
 
-inline Rgb XmlElement::color(const std::string& name, float otherwise, Color use) {
+inline Rgb XmlElement::color(const std::string& name, const Rgb& otherwise, SpectrumUse use) {
     const auto node = find(name, {"rgb", "float", "integer", "spectrum"});
-    if (!node) return Rgb(otherwise);
+    if (!node) return otherwise;
     const std::string_view tag = node.name();
-    if (tag == "spectrum" && std::string_view(node.attribute("value").value()).find(':') != std::string_view::npos)
-        fail(file_.origin(node), "a spectrum by wavelengths is not supported: give an <rgb>");
+    if (tag == "spectrum") return read_spectrum(file_, node, use);
     const auto numbers =
         tag == "rgb" ? read_numbers(file_, node, "value", {1, 3}) : read_numbers(file_, node, "value", {1});
-    DVec3 color = numbers.size() == 1 ? DVec3(numbers[0]) : DVec3(numbers[0], numbers[1], numbers[2]);
-    // Constant spectral radiance is XYZ (1, 1, 1), whose sRGB coordinates these are (the row sums of the BT.709
-    // matrix).
-    if (tag == "spectrum" && use == Color::emission) color *= DVec3(1.204794, 0.948292, 0.908916);
-    const Rgb result(color);
+    const Rgb result(numbers.size() == 1 ? DVec3(numbers[0]) : DVec3(numbers[0], numbers[1], numbers[2]));
     if (!lightswitch::is_finite(result)) fail(file_.origin(node), "the colour is too large");
+    return result;
+}
+
+inline Rgb XmlElement::read_spectrum(const XmlFile& file, pugi::xml_node node, SpectrumUse use) {
+    const Origin where = file.origin(node);
+    if ((node.attribute("value") ? 1 : 0) + (node.attribute("filename") ? 1 : 0) + (node.attribute("type") ? 1 : 0) !=
+        1)
+        fail(where, "needs one of the attributes \"value\", \"filename\" and \"type\"");
+    if (node.attribute("type")) return XmlElement(file, node).spectrum_of_type(use);
+    if (node.attribute("value"))
+        return spectrum_to_rgb(parse_spectrum(node.attribute("value").value(), where), use, where);
+    const auto folder = std::filesystem::path(where.file).parent_path();
+    const Spectrum spectrum =
+        at_place(where, [&] { return load_spectrum(folder / node.attribute("filename").value()); });
+    return spectrum_to_rgb(spectrum, use, where);
+}
+
+inline Rgb XmlElement::spectrum_of_type(SpectrumUse use) {
+    const std::string kind = type();
+    Rgb result;
+    if (kind == "uniform") {
+        result = Rgb(static_cast<float>(number("value", 1)));
+    } else if (kind == "d65") {
+        result = color("color", 1) * static_cast<float>(number("scale", 1));
+    } else if (kind == "srgb") {
+        result = color("color", 1);
+    } else if (kind == "regular") {
+        const double lowest = number("wavelength_min", cie_first), highest = number("wavelength_max", cie_last);
+        result = spectrum_to_rgb(parse_regular_spectrum(lowest, highest, text("values").value_or(""), origin()), use,
+                                 origin());
+    } else if (kind == "irregular") {
+        const std::string wavelengths = text("wavelengths").value_or("");
+        result = spectrum_to_rgb(parse_irregular_spectrum(wavelengths, text("values").value_or(""), origin()), use,
+                                 origin());
+    } else if (kind == "blackbody") {
+        const auto temperature = number("temperature");
+        if (!temperature) error("the parameter \"temperature\" is missing");
+        const double lowest = number("wavelength_min", cie_first);
+        result = blackbody_to_rgb(*temperature, lowest, number("wavelength_max", cie_last), origin());
+    } else {
+        unknown_type("uniform, d65, srgb, regular, irregular and blackbody");
+    }
+    finish();
     return result;
 }
 

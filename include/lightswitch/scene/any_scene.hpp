@@ -11,10 +11,6 @@
 namespace lightswitch {
 
 using DiffuseBsdfs = Bsdfs<Lambert>;
-using AllBsdfs = Bsdfs<Lambert, Conductor, RoughConductor, Dielectric>;
-
-/// The same with any parameter of a model from a texture.
-using TexturedBsdfs = Bsdfs<Textured<Lambert>, Textured<Conductor>, Textured<RoughConductor>, Textured<Dielectric>>;
 
 /// Diffuse surfaces, luminous triangles.
 using DiffuseScene = Scene<DiffuseBsdfs, Lights<TriangleLight>>;

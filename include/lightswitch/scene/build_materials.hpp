@@ -81,6 +81,8 @@ private:
                 fail(origin,
                      "this scene type does not know where u grows on a surface, which that surface model needs; put a "
                      "Textured<...> into the scene's Bsdfs<...>");
+        if (two_sided && transmits_light(material))
+            fail(origin, "a surface that transmits light has no back of its own and cannot be two-sided");
         constexpr std::size_t itself = index_of<M, B...>();
         // Or what can be made of it, such as `Textured<M>`.
         constexpr std::size_t kind =

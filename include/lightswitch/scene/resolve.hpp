@@ -195,15 +195,17 @@ template <class Point>
     dispatch<kinds>(point.material.kind(), [&](auto kind) {
         const auto& material = std::get<kind>(data.bsdfs)[point.material.position()];
         using Model = model_of<std::remove_cvref_t<decltype(material)>>;
-        Mapped<Model>& mapped = point.model.template emplace<kind>();
-        Model& model = mapped;
-        if constexpr (std::same_as<Model, std::remove_cvref_t<decltype(material)>>) model = material;
-        else model = material.at(Place{point.uv, point});
+        // Made in one piece: a model's defaults may be dear to find.
+        Mapped<Model>& model = [&]() -> Mapped<Model>& {
+            if constexpr (std::same_as<Model, std::remove_cvref_t<decltype(material)>>)
+                return point.model.template emplace<kind>(Mapped<Model>{material, {}});
+            else return point.model.template emplace<kind>(Mapped<Model>{material.at(Place{point.uv, point}), {}});
+        }();
         if (!is_isotropic(model)) point.tangent = tangents().u;
         if (map.active) {
             const Vec3 before = point.shading_frame().to_local(normal_before);
             map.before = before.z < 0 ? -before : before;
-            mapped.map = map;
+            model.map = map;
         }
     });
     return true;

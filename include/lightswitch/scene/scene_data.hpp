@@ -18,10 +18,6 @@
 
 namespace lightswitch {
 
-/// The materials of a scene: surface models, or what gives one at every place.
-template <class... B>
-requires(detail::RequireMaterial<B>::value&&...) struct Bsdfs {
-};
 /// The kinds of light of a scene.
 template <Light... L>
 struct Lights {};

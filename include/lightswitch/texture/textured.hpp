@@ -19,7 +19,7 @@ public:
     static constexpr std::size_t parameters = std::tuple_size_v<std::remove_cvref_t<decltype(parameters_of<B>)>>;
 
     /// With the parameters of `constants` where no texture is set.
-    Textured(const B& constants = {}) { static_cast<B&>(constants_) = constants; }
+    Textured(const B& constants = {}) : constants_{constants, {}} {}
 
     /// The model where no parameter has a texture.
     const Mapped<B>* constant() const { return varies_ ? nullptr : &constants_; }
