@@ -98,8 +98,8 @@ inline double mitsuba_masking_ratio(Facets facets, float alpha_u, float alpha_v,
     return (a < 1.6 ? (3.535 * a + 2.181 * a * a) / (1 + 2.276 * a + 2.577 * a * a) : 1) / exact;
 }
 
-/// The rows of `model` are what `bsdf` says, to that relative tolerance, after `value_ratio(wo, wi)` and `pdf_ratio(wo)`
-/// have turned its values into Mitsuba's where the two are meant to differ.
+/// The rows of `model` are what `bsdf` says, to that relative tolerance, after `value_ratio(wo, wi)` and
+/// `pdf_ratio(wo)` have turned its values into Mitsuba's where the two are meant to differ.
 template <Bsdf B>
 void check_against_mitsuba(const B& bsdf, const MitsubaModel& model, double tolerance, const auto& value_ratio,
                            const auto& pdf_ratio) {

@@ -29,9 +29,9 @@ Plastic white(float eta) { return {.eta = eta, .diffuse_reflectance = Rgb(1)}; }
 }  // namespace
 
 TEST_CASE("plastic: values and densities are Mitsuba's, but for its fit of the reflectance of diffuse light") {
-    const auto models = test::mitsuba_models("plastic");
-    CHECK(models.size() == 6);
-    for (const auto& model : models) {
+    const auto tables = test::mitsuba_models("plastic");
+    CHECK(tables.size() == 6);
+    for (const auto& model : tables) {
         const Plastic plastic{.eta = model.eta(),
                               .diffuse_reflectance = model.color("diffuse_reflectance"),
                               .specular_reflectance = model.color("specular_reflectance"),

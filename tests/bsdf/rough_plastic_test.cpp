@@ -40,9 +40,9 @@ const double level = test::sidak(1e-6, 8 * 5);
 }  // namespace
 
 TEST_CASE("rough plastic: values and densities agree with Mitsuba's") {
-    const auto models = test::mitsuba_models("roughplastic");
-    CHECK(models.size() == 14);
-    for (const auto& model : models) {
+    const auto tables = test::mitsuba_models("roughplastic");
+    CHECK(tables.size() == 14);
+    for (const auto& model : tables) {
         const RoughPlastic plastic{.distribution = model.facets(),
                                    .alpha = model.number("alpha"),
                                    .eta = model.eta(),

@@ -126,8 +126,9 @@ TEST_CASE("methods agree about textures, and a texture that is turned over is fo
 TEST_CASE("textured materials: a name that stands for two parameters gives both") {
     const Texture rough(Checkerboard{Rgb(0.5f), Rgb(0.5f)});
     const RoughConductor constants{.alpha_u = 0.2f, .alpha_v = 0.3f};
+    const SurfacePoint point{};
     const auto with = [&](const char* name) {
-        const RoughConductor metal = Textured<RoughConductor>(constants).set(name, rough).at(Place{});
+        const RoughConductor metal = Textured<RoughConductor>(constants).set(name, rough).at({Vec2(0.5f), point});
         return Vec2(metal.alpha_u, metal.alpha_v);
     };
     CHECK(with("alpha") == Vec2(0.5f, 0.5f));

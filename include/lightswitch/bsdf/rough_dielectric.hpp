@@ -28,7 +28,6 @@ struct RoughDielectric {
     BsdfValue evaluate(const Vec3& wo, const Vec3& wi, Transport transport) const {
         if (wo.z == 0 || wi.z == 0) return {};
         const Microfacets facets(distribution, alpha_u, alpha_v);
-        const float masking = 1 / (facets.smith_denominator(upward(wo)) * facets.smith_denominator(upward(wi)));
         const float relative = wo.z > 0 ? eta : 1 / eta;
         const Vec3 sum = wo + wi;
         const float sum_squared = length_squared(sum);
@@ -36,8 +35,8 @@ struct RoughDielectric {
             if (!(sum_squared > 1e-30f)) return {};  // both at the horizon, closer than floats can tell
             const float cos_half = std::min(0.5f * std::sqrt(sum_squared), 1.0f);
             const float fresnel = fresnel_dielectric(cos_half, relative).reflectance;
-            const float scattered = fresnel * facets.distribution(sum) * masking;
-            return {reflectance * scattered, {0.5f * scattered * facets.smith_denominator(upward(wi))}};
+            const float density = fresnel * facets.distribution(sum) / facets.smith_denominator(upward(wo));
+            return {reflectance * (density / facets.smith_denominator(upward(wi))), {0.5f * density}};
         }
         // wo + relative * wi lies along the normal of the facet that refracts one into the other. The sum of the
         // directions is exact where they nearly cancel, and the cosines are sums of |relative - 1| and it.
@@ -49,11 +48,11 @@ struct RoughDielectric {
         if (!(o > 0 && i > 0 && normal.z * wo.z > 0)) return {};
         const float inverse_length = 1 / std::sqrt(squared);
         const float cos_o = std::min(o * inverse_length, 1.0f), cos_i = i * inverse_length;
-        const float scattered = 4 * refracted(cos_o, relative * cos_i, relative) * facets.distribution(normal) *
-                                masking * cos_o * cos_i / squared;
-        const float relative_squared = relative * relative;
-        return {transmittance * (transport == Transport::radiance ? scattered : scattered * relative_squared),
-                {0.5f * scattered * relative_squared * facets.smith_denominator(upward(wi))}};
+        const float density = 4 * refracted(cos_o, relative * cos_i, relative) * facets.distribution(normal) * cos_o *
+                              cos_i / (squared * facets.smith_denominator(upward(wo)));
+        const float scale = transport == Transport::radiance ? 1 : relative * relative;
+        return {transmittance * (scale * density / facets.smith_denominator(upward(wi))),
+                {0.5f * relative * relative * density}};
     }
 
     /// Reflects or refracts at a visible normal, with the probability of Fresnel's reflectance there. That, D and
