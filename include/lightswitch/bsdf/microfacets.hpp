@@ -100,10 +100,10 @@ private:
     /// Microfacet-Based BSDFs using the Distribution of Visible Normals", EGSR 2014).
     ///
     /// Its integral is inverted by Newton's method in t = erfc(-x), as Jakob's "An Improved Visible Normal Sampling
-    /// Routine for the Beckmann Distribution" (2014) does in erf(x): with t the integral is c t +
-    /// s exp(-x^2) / sqrt(pi) over its value at c / s, which is the denominator of Smith's masking. It is concave in t, so from the left of
-    /// the root every step ends between where it began and the root. At grazing angles, where x = -sqrt(-log u), the
-    /// start is the root; elsewhere it is to the left of it.
+    /// Routine for the Beckmann Distribution" (2014) does in erf(x): the integral is c t + s exp(-x^2) / sqrt(pi) over
+    /// its value at c / s, the denominator of Smith's masking. It is concave in t, so from the left of the root every
+    /// step ends between where it began and the root. At grazing angles, where x = -sqrt(-log u), the start is the
+    /// root; elsewhere it is to the left of it.
     static Vec3 beckmann_visible_normal(const Vec3& w, const Vec2& u) {
         constexpr float inv_sqrt_pi = 0.56418958354775628695f;
         constexpr float least = 0x1p-25f;  // half a step of the numbers that samplers give
