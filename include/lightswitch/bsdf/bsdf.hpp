@@ -57,9 +57,9 @@ struct PhongTerms {
 /// - `phong()` returns the `PhongTerms` that represent the model;
 /// - `albedo()` an `Rgb`, the surface's colour whatever the directions, 0 to 1 (without it that of `phong()`);
 /// - `static constexpr bool transmits = true` says that light gets through the surface;
-/// - `static constexpr bool partly_specular = true` says that beside smooth lobes there are Dirac distributions: those come
-///   from `sample` alone, with a weight that is divided by the probability of the lobe; `evaluate` knows the smooth
-///   lobes, and its density integrates to their probability;
+/// - `static constexpr bool partly_specular = true` says that beside smooth lobes there are Dirac distributions: those
+///   come from `sample` alone, with a weight that is divided by the probability of the lobe; `evaluate` knows the
+///   smooth lobes, and its density integrates to their probability;
 /// - `transmits_light()` is false where light does not get through with the parameters at hand;
 /// - `isotropic()` is false when turning the surface around its normal changes something.
 template <class B>

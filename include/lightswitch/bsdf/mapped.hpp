@@ -18,11 +18,11 @@ struct MappedNormal {
 ///
 /// - black where the turned surface faces away from the camera or the light that the surface before faces, or the other
 ///   way round: nothing shines through from behind;
-/// - where the camera faces the surface but not the turned one, the normal is turned to the other side by as much, so that
-///   there are no black flecks (`MappedNormal::flips`);
+/// - where the camera faces the surface but not the turned one, the normal is turned to the other side by as much, so
+///   that there are no black flecks (`MappedNormal::flips`);
 /// - instead of the hard edge that turned normals give shadows on a curved surface, one as of microfacets of that slope
-///   (`MappedNormal::shadows`; Conty Estevez, Lecocq and Stein, "A Microfacet-Based Shadowing Function to Solve the Bump
-///   Terminator Problem", Ray Tracing Gems, 2019).
+///   (`MappedNormal::shadows`; Conty Estevez, Lecocq and Stein, "A Microfacet-Based Shadowing Function to Solve the
+///   Bump Terminator Problem", Ray Tracing Gems, 2019).
 ///
 /// All that depends on which of the two directions is on the camera's side: `wo` for radiance, `wi` for importance. So
 /// methods that trace light see the same surface; they try both normals, by chance.

@@ -41,8 +41,8 @@ inline float read_relative_index(XmlElement& element, const std::string& inside,
     return static_cast<float>(index / read_index_of_refraction(element, "ext_ior", outside));
 }
 
-/// The parameters of a model that are plain numbers and colours; what the file leaves out, and what a texture will give,
-/// stays as it is.
+/// The parameters of a model that are plain numbers and colours; what the file leaves out, and what a texture will
+/// give, stays as it is.
 template <class B>
 void read_parameters(XmlElement& element, B& model) {
     for_each_parameter<B>([&](std::size_t, const auto& parameter) {

@@ -2,23 +2,17 @@
 
 // From a description to a scene: every check, then render space, records, lights and Embree.
 
-#include <lightswitch/light/sphere_light.hpp>
-#include <lightswitch/light/triangle_light.hpp>
+#include <lightswitch/scene/all_lights.hpp>
 #include <lightswitch/scene/build_lights.hpp>
 #include <lightswitch/scene/build_materials.hpp>
 #include <lightswitch/scene/check.hpp>
 #include <lightswitch/scene/description.hpp>
 #include <lightswitch/scene/rounding.hpp>
 #include <lightswitch/scene/scene.hpp>
-#include <lightswitch/texture/textured_triangle_light.hpp>
 
 #include <chrono>
 
 namespace lightswitch {
-
-/// Every kind of light that a description can ask for.
-using AllLights = Lights<ConstantEnvironment, MappedEnvironment, DirectionalLight, PointLight, SpotLight, SphereLight,
-                         TriangleLight, TexturedTriangleLight>;
 
 /// How a scene is built.
 struct BuildOptions {

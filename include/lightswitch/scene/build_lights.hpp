@@ -14,8 +14,8 @@ struct PendingEmitter {
     std::size_t count;
 };
 
-/// Numbers the lights and decides how often each is chosen: half by power, half evenly among the emitters, because a dim
-/// light may be the one that matters where it is near. Within an emitter its lights are chosen by power.
+/// Numbers the lights and decides how often each is chosen: half by power, half evenly among the emitters, because a
+/// dim light may be the one that matters where it is near. Within an emitter its lights are chosen by power.
 template <class BsdfList, class... L>
 void choose_lights(SceneData<BsdfList, Lights<L...>>& data, const std::vector<PendingEmitter>& pending) {
     std::vector<double> powers;

@@ -1,7 +1,7 @@
 #pragma once
 
-// What lies over surface models: layers, which name other materials of a description by their numbers. They may be nested
-// in any way, and add no type to a scene: a ray that meets them is led to one surface model.
+// What lies over surface models: layers, which name other materials of a description by their numbers. They may be
+// nested in any way, and add no type to a scene: a ray that meets them is led to one surface model.
 
 #include <lightswitch/texture/texture.hpp>
 
@@ -9,15 +9,17 @@
 
 namespace lightswitch {
 
-/// `weight` (0 to 1, its luminance counts) of `second`, and the rest of `first`. Which of the two a path sees at a vertex
-/// is decided by a number that is drawn from place and direction (as in pbrt-v4, section 10.5.1): noise, but no bias.
+/// `weight` (0 to 1, its luminance counts) of `second`, and the rest of `first`. Which of the two a path sees at a
+/// vertex is decided by a number that is drawn from place and direction (as in pbrt-v4, section 10.5.1): noise, but no
+/// bias.
 struct Blend {
     std::size_t first, second;
     Texture weight;
 };
 
-/// A surface that is there with the probability `opacity` (0 to 1, luminance), and is `inner` then. Where it is not, paths
-/// and shadow rays go straight on, and no bounce is counted. The number that decides is drawn like that of a `Blend`.
+/// A surface that is there with the probability `opacity` (0 to 1, luminance), and is `inner` then. Where it is not,
+/// paths and shadow rays go straight on, and no bounce is counted. The number that decides is drawn like that of a
+/// `Blend`.
 struct Mask {
     std::size_t inner;
     Texture opacity;

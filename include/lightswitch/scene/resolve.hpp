@@ -57,8 +57,8 @@ inline Tangents tangents_on_sphere(const auto& data, std::uint32_t sphere, const
             pi * radius * (to_world * Vec3(local.z * around.x, local.z * around.y, -sine))};
 }
 
-/// Numbers in [0, 1) by which layers decide, drawn from where a ray meets the surface: so every method, and a shadow ray
-/// too, decides for a path with the same probability.
+/// Numbers in [0, 1) by which layers decide, drawn from where a ray meets the surface: so every method, and a shadow
+/// ray too, decides for a path with the same probability.
 class LayerChoices {
 public:
     explicit LayerChoices(const SurfacePoint& point) {
@@ -97,8 +97,8 @@ inline Vec3 mapped_normal(const SurfacePoint& point, const Tangents& tangents, c
 }
 
 /// Goes down the layers over a point until a surface model is reached, which becomes the point's material; false where
-/// the surface is not there. `tangents()` is asked when a layer needs them; `map` says what maps have done to the shading
-/// normal, all but the normal before, for which the frame must be known.
+/// the surface is not there. `tangents()` is asked when a layer needs them; `map` says what maps have done to the
+/// shading normal, all but the normal before, for which the frame must be known.
 template <std::size_t layers>
 bool resolve_layers(const auto& data, const Vec2& uv, SurfacePoint& point, MappedNormal& map, const auto& tangents) {
     LayerChoices choices(point);
@@ -142,8 +142,8 @@ bool resolve_layers(const auto& data, const Vec2& uv, SurfacePoint& point, Mappe
         if (behind) point.shading_normal = -point.shading_normal;
         two_sided = false;
     }
-    // The point keeps its model, even of a material that is the same everywhere. A turned normal says little about where
-    // light comes from.
+    // The point keeps its model, even of a material that is the same everywhere. A turned normal says little about
+    // where light comes from.
     const std::size_t flags = (two_sided ? MaterialIndex::both_sides : 0) | MaterialIndex::varying |
                               (next.lit_through() || map.active ? MaterialIndex::through : 0);
     point.material = MaterialIndex(next.kind(), next.position(), flags);
@@ -173,8 +173,8 @@ inline Tangents find_tangents(const auto& data, const Placement& placement, cons
     return result;
 }
 
-/// Finds the surface model at a `PlacedPoint` whose material varies, and its material, texture coordinates and tangent; false where the surface
-/// is not there. `hit` as `locate` left it.
+/// Finds the surface model at a `PlacedPoint` whose material varies, and its material, texture coordinates and tangent;
+/// false where the surface is not there. `hit` as `locate` left it.
 template <class Point>
 [[gnu::noinline]] bool resolve(const auto& data, const Placement& placement, const embree::Hit& hit, Point& point) {
     constexpr std::size_t kinds = std::tuple_size_v<decltype(data.bsdfs)>;

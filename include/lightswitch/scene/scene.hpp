@@ -5,8 +5,6 @@
 
 #include <lightswitch/camera/camera_id.hpp>
 #include <lightswitch/camera/make_camera.hpp>
-#include <lightswitch/camera/orthographic_camera.hpp>
-#include <lightswitch/camera/perspective_camera.hpp>
 #include <lightswitch/core/dispatch.hpp>
 #include <lightswitch/geometry/surface_point.hpp>
 #include <lightswitch/scene/check.hpp>
@@ -20,9 +18,6 @@
 #include <vector>
 
 namespace lightswitch {
-
-/// Every kind of camera that a description can ask for.
-using AllCameras = Cameras<PerspectiveCamera, OrthographicCamera>;
 
 template <class BsdfList, class LightList, class CameraList = AllCameras>
 class Scene;
