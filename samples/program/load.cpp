@@ -28,16 +28,16 @@ LibraryDescription describe(const SceneOptions& options, Notices& notices) {
     return *stock;
 }
 
-struct MaterialName {
-    std::string operator()(const Lambert&) const { return "diffuse"; }
-    std::string operator()(const Conductor&) const { return "conductor"; }
-    std::string operator()(const RoughConductor&) const { return "rough conductor"; }
-    std::string operator()(const Dielectric&) const { return "dielectric"; }
-    template <class Model>
-    std::string operator()(const Textured<Model>&) const {
-        return "textured " + (*this)(Model{});
-    }
-};
+std::string material_name(const LibraryDescription::NamedMaterial& material) {
+    const std::string sides = material.two_sided ? "two-sided " : "";
+    if (material.layer) return sides + std::string(layer_name(*material.layer));
+    return sides + std::visit(
+                       []<class M>(const M&) {
+                           const std::string name(model_of<M>::name);
+                           return PlacedMaterial<M> ? "textured " + name : name;
+                       },
+                       material.bsdf);
+}
 
 SceneSummary summarize(const LibraryDescription& scene) {
     SceneSummary summary{.camera = scene.camera,
@@ -47,19 +47,21 @@ SceneSummary summarize(const LibraryDescription& scene) {
                          .samples = scene.samples,
                          .materials = {},
                          .files = {scene.files.begin(), scene.files.end()}};
-    for (const auto& shape : scene.shapes) {
+    const auto count = [&](const auto& shape) {
         const bool mesh = std::holds_alternative<Mesh>(shape.geometry);
         summary.meshes += mesh ? 1 : 0;
         if (shape.emission) ++(mesh ? summary.luminous_meshes : summary.luminous_spheres);
-    }
+    };
+    for (const auto& shape : scene.shapes) count(shape);
+    for (const auto& group : scene.groups)
+        for (const auto& shape : group.shapes) count(shape);
     for (const auto& placed : scene.sources) {
         if (placed.source.is_environment()) ++summary.environments;
         if (placed.source.get<PointSource>()) ++summary.point_lights;
         if (placed.source.get<SpotSource>()) ++summary.spot_lights;
         if (placed.source.get<DirectionalSource>()) ++summary.directional_lights;
     }
-    for (const auto& material : scene.materials)
-        ++summary.materials[(material.two_sided ? "two-sided " : "") + std::visit(MaterialName{}, material.bsdf)];
+    for (const auto& material : scene.materials) ++summary.materials[material_name(material)];
     return summary;
 }
 

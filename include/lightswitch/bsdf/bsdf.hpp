@@ -8,6 +8,7 @@
 
 #include <concepts>
 #include <string>
+#include <string_view>
 
 namespace lightswitch {
 
@@ -54,6 +55,7 @@ struct PhongTerms {
 /// - `problem()`: why the parameters are impossible, in words, or an empty string.
 ///
 /// Optionally
+/// - `static constexpr std::string_view name` says what it is called in lists;
 /// - `phong()` returns the `PhongTerms` that represent the model;
 /// - `albedo()` an `Rgb`, the surface's colour whatever the directions, 0 to 1 (without it that of `phong()`);
 /// - `static constexpr bool transmits = true` says that light gets through the surface;

@@ -8,6 +8,7 @@ namespace lightswitch {
 
 /// Perfectly smooth metal, front side only: an ideal mirror, or Fresnel's equations for `eta` and `k`.
 struct Conductor {
+    static constexpr std::string_view name = "conductor";
     static constexpr bool specular = true;
 
     Rgb eta{0};          ///< real part of the index of refraction

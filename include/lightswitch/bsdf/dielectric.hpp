@@ -8,6 +8,7 @@ namespace lightswitch {
 
 /// Perfectly smooth boundary between two transparent media: reflection and refraction after Fresnel.
 struct Dielectric {
+    static constexpr std::string_view name = "dielectric";
     static constexpr bool specular = true;
     static constexpr bool transmits = true;
 

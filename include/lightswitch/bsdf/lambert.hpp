@@ -8,6 +8,7 @@ namespace lightswitch {
 
 /// Ideal diffuse reflection on the front side; the back side is black (Lambert 1760; pbrt-v4, section 9.2).
 struct Lambert {
+    static constexpr std::string_view name = "diffuse";
     static constexpr bool specular = false;
 
     Rgb reflectance{0.5f};  ///< fraction of the light that is reflected, each component 0 to 1

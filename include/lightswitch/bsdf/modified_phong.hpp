@@ -10,6 +10,7 @@ namespace lightswitch {
 ///
 /// The lobe is normalised at normal incidence; elsewhere it reflects less: a narrow one in proportion to the cosine.
 struct ModifiedPhong {
+    static constexpr std::string_view name = "Phong";
     static constexpr bool specular = false;
 
     float exponent = 30;             ///< of the cosine to the mirror direction, 0 to 1e6

@@ -19,6 +19,7 @@ namespace lightswitch {
 /// in which nothing cancels. By default R counts as 1 in the denominator, so that colours keep their hues: `nonlinear`
 /// is the exact sum. T is exact (`diffuse_transmittance`); Mitsuba's fit of it is off by 0.1 % for an index below 2.
 struct Plastic {
+    static constexpr std::string_view name = "plastic";
     static constexpr bool specular = false;
     static constexpr bool partly_specular = true;
 

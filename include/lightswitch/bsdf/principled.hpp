@@ -17,6 +17,7 @@ namespace lightswitch {
 ///
 /// With `spec_trans` it lets light through and can have no `TwoSided` around it; without it can.
 struct Principled {
+    static constexpr std::string_view name = "principled";
     static constexpr bool specular = false;
     static constexpr bool transmits = true;
 

@@ -14,6 +14,7 @@ namespace lightswitch {
 /// Made to be handled by artists, lobes do not know of each other: bright rough surfaces gain energy, with sheen or
 /// saturated tints more of it (tests/bsdf/principled_thin_test.cpp says how much).
 struct PrincipledThin {
+    static constexpr std::string_view name = "thin principled";
     static constexpr bool specular = false;
     static constexpr bool transmits = true;
 

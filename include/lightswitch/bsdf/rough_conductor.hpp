@@ -12,6 +12,7 @@ namespace lightswitch {
 /// Single scattering with separable Smith masking, G = G1(wo) G1(wi), as Mitsuba's `roughconductor`: light that would
 /// leave after several bounces between facets is lost, so rough metals are somewhat too dark.
 struct RoughConductor {
+    static constexpr std::string_view name = "rough conductor";
     static constexpr bool specular = false;
 
     Facets distribution = Facets::beckmann;

@@ -15,6 +15,7 @@ namespace lightswitch {
 /// masked, as for `eta` beside 1. Between, where |eta - 1| times the roughness is below 1e-6, samples are right, but
 /// directions are too coarse for `evaluate` to say where in the lobe of refraction they are.
 struct RoughDielectric {
+    static constexpr std::string_view name = "rough dielectric";
     static constexpr bool specular = false;
     static constexpr bool transmits = true;
 

@@ -12,6 +12,7 @@ namespace lightswitch {
 /// Up to a reflectance of 0.95 it never gives back more light than it gets. The fits of the paper give a white surface
 /// of alpha 0.4 an albedo of 1.05 at grazing angles; the mean over directions is at most 1.0003.
 struct RoughDiffuse {
+    static constexpr std::string_view name = "rough diffuse";
     static constexpr bool specular = false;
 
     float alpha = 0.2f;            ///< roughness, 0 to 1; with none it is `Lambert`

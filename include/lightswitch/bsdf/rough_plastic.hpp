@@ -10,6 +10,7 @@ namespace lightswitch {
 /// The coat reflects as a `RoughConductor` does, with Fresnel's equations for a dielectric. What enters meets the base
 /// and the inside of the coat in turn until it gets out: see `Plastic`, whose smooth coat is here a `RoughCoat`.
 struct RoughPlastic {
+    static constexpr std::string_view name = "rough plastic";
     static constexpr bool specular = false;
 
     Facets distribution = Facets::beckmann;

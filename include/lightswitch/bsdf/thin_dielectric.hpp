@@ -13,6 +13,7 @@ namespace lightswitch {
 /// Transmitted through a Pile of Plates"): with R and T = 1 - R of one face, the pane reflects
 /// R + T R T + T R^3 T + ... = 2 R / (1 + R).
 struct ThinDielectric {
+    static constexpr std::string_view name = "thin dielectric";
     static constexpr bool specular = true;
     static constexpr bool transmits = true;
 

@@ -18,6 +18,7 @@ enum class WardVariant {
 /// `ward` grows like 1 / sqrt(wo.z), `ward_duer` like 1 / wo.z, where `wo` nears the horizon; their samples have
 /// weights as large, and at grazing angles both may give back more light than they get.
 struct Ward {
+    static constexpr std::string_view name = "Ward";
     static constexpr bool specular = false;
 
     WardVariant variant = WardVariant::balanced;

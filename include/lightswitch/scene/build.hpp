@@ -205,7 +205,7 @@ private:
             const double twice_area = glm::length(cross);
             if (!(twice_area >= smallest_shape * smallest_shape)) {  // nothing can hit it, and it has no normal
                 ++data_.statistics.degenerate_triangles;
-                lost = lost || has_area(mesh, corners);
+                lost = lost || has_area(space_, mesh, corners);
                 continue;
             }
             triangles.push_back(corners);
@@ -286,12 +286,6 @@ private:
         data_.spheres.push_back(record);
         if (BuiltScene::placed) data_.sphere_axes.push_back(Mat3(glm::transpose(sphere.axes)));
         spheres_.push_back({record.center, record.radius});
-    }
-
-    /// Whether the triangle has an area before its corners become floats.
-    bool has_area(const Mesh& mesh, const std::array<std::uint32_t, 3>& corners) const {
-        const auto corner = [&](std::size_t i) { return space_.point(mesh.positions[corners[i]]); };
-        return glm::length(glm::cross(corner(1) - corner(0), corner(2) - corner(0))) > 0;
     }
 
     typename BuiltScene::Data data_;

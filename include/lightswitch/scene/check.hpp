@@ -5,6 +5,7 @@
 #include <lightswitch/bsdf/bsdf.hpp>
 #include <lightswitch/core/problem.hpp>
 #include <lightswitch/film/image.hpp>
+#include <lightswitch/geometry/render_space.hpp>
 #include <lightswitch/scene/description.hpp>
 
 namespace lightswitch::detail {
@@ -210,6 +211,12 @@ void check(const SceneDescription<Material>& scene) {
 inline void check_count(std::size_t count, std::size_t max_position, const Origin& origin, const std::string& what) {
     if (count > max_position)
         fail(origin, "the scene has more than " + std::to_string(max_position + 1) + " " + what + " of one kind");
+}
+
+/// Whether the triangle has an area in render space, before its corners become floats.
+inline bool has_area(const RenderSpace& space, const Mesh& mesh, const std::array<std::uint32_t, 3>& t) {
+    const DVec3 a = space.point(mesh.positions[t[0]]), b = space.point(mesh.positions[t[1]]);
+    return glm::length(glm::cross(b - a, space.point(mesh.positions[t[2]]) - a)) > 0;
 }
 
 /// Corners of the box around all shapes; both at the camera when there are none.

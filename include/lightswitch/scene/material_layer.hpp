@@ -5,6 +5,7 @@
 
 #include <lightswitch/texture/texture.hpp>
 
+#include <string_view>
 #include <variant>
 
 namespace lightswitch {
@@ -47,5 +48,12 @@ struct BothSides {
 };
 
 using MaterialLayer = std::variant<Blend, Mask, BumpMap, NormalMap, BothSides>;
+
+/// What the layer is called in lists.
+inline std::string_view layer_name(const MaterialLayer& layer) {
+    constexpr std::string_view names[] = {"blend", "mask", "bump map", "normal map", "two models, one on each side"};
+    static_assert(std::size(names) == std::variant_size_v<MaterialLayer>);
+    return names[layer.index()];
+}
 
 }  // namespace lightswitch
