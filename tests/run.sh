@@ -15,7 +15,12 @@ finish() {
   exit
 }
 
-if ! configure_project "$@"; then
+# Long tests are built only to be run.
+case ${LIGHTSWITCH_TEST_LABEL:=quick} in
+  quick) long=OFF ;;
+  *) long=ON ;;
+esac
+if ! configure_project -DLIGHTSWITCH_TEST_LONG=$long "$@"; then
   echo "tests: the build could not be configured"
   failed=1
   finish
@@ -27,7 +32,7 @@ if ! build_targets lightswitch_tests; then
   failed=1
 fi
 
-case ${LIGHTSWITCH_TEST_LABEL:=quick} in
+case $LIGHTSWITCH_TEST_LABEL in
   quick | long) select=(--label-regex "^$LIGHTSWITCH_TEST_LABEL\$") ;;
   all) select=() ;;
   *) echo "tests: LIGHTSWITCH_TEST_LABEL is '$LIGHTSWITCH_TEST_LABEL': it must be quick, long or all" >&2; exit 2 ;;

@@ -31,7 +31,18 @@ struct Mapped : B {
     MappedNormal map;
 
     BsdfValue evaluate(const Vec3& wo, const Vec3& wi, Transport transport) const {
-        if (!map.active) return B::evaluate(wo, wi, transport);
+        if (map.active) [[unlikely]]
+            return mapped_value(wo, wi, transport);
+        return B::evaluate(wo, wi, transport);
+    }
+    Maybe<BsdfSample> sample(const Vec3& wo, const Vec3& u, Transport transport) const {
+        if (map.active) [[unlikely]]
+            return mapped_sample(wo, u, transport);
+        return B::sample(wo, u, transport);
+    }
+
+private:
+    [[gnu::noinline]] BsdfValue mapped_value(const Vec3& wo, const Vec3& wi, Transport transport) const {
         const bool from_camera = transport == Transport::radiance;
         BsdfValue result;
         const bool flipped = is_flipped(from_camera ? wo : wi);
@@ -48,8 +59,7 @@ struct Mapped : B {
         return result;
     }
 
-    Maybe<BsdfSample> sample(const Vec3& wo, const Vec3& u, Transport transport) const {
-        if (!map.active) return B::sample(wo, u, transport);
+    [[gnu::noinline]] Maybe<BsdfSample> mapped_sample(const Vec3& wo, const Vec3& u, Transport transport) const {
         if (transport == Transport::radiance) return sample_from(wo, u, transport, is_flipped(wo));
         const Tries tries = tries_for(wo);
         if (!tries.straight && !tries.flipped) return {};
@@ -58,7 +68,6 @@ struct Mapped : B {
         return sample_from(wo, Vec3(Vec2(u), flipped ? 2 * u.z - 1 : 2 * u.z), transport, flipped);
     }
 
-private:
     /// Which of the two normals light from a direction can meet.
     struct Tries {
         bool straight, flipped;

@@ -17,7 +17,7 @@ struct ModifiedPhong {
     Rgb diffuse_reflectance{0.5f};   ///< 0 to 1, together with the other
     Rgb specular_reflectance{0.2f};  ///< of the lobe at normal incidence
 
-    BsdfValue evaluate(const Vec3& wo, const Vec3& wi, Transport) const {
+    [[gnu::noinline]] BsdfValue evaluate(const Vec3& wo, const Vec3& wi, Transport) const {
         if (!(wo.z > 0 && wi.z > 0)) return {};
         // 1 - cosine to the mirror direction, with all digits however large the exponent is.
         const float lift = 0.5f * length_squared(wi - mirrored(wo));
@@ -28,7 +28,7 @@ struct ModifiedPhong {
     }
 
     /// Chooses the lobe by `u.z`.
-    Maybe<BsdfSample> sample(const Vec3& wo, const Vec3& u, Transport transport) const {
+    [[gnu::noinline]] Maybe<BsdfSample> sample(const Vec3& wo, const Vec3& u, Transport transport) const {
         if (!(wo.z > 0)) return {};
         if (!(u.z < detail::lobe_probability(specular_reflectance, diffuse_reflectance)))
             return detail::sample_of_all_lobes(*this, wo, cosine_hemisphere(Vec2(u)), transport);

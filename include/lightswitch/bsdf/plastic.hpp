@@ -31,14 +31,14 @@ struct Plastic {
     /// Follows from `eta` and is not to be given; whoever changes `eta` later must set it again.
     float coat_transmittance = diffuse_transmittance(eta);
 
-    BsdfValue evaluate(const Vec3& wo, const Vec3& wi, Transport) const {
+    [[gnu::noinline]] BsdfValue evaluate(const Vec3& wo, const Vec3& wi, Transport) const {
         if (!(wo.z > 0 && wi.z > 0)) return {};
         const Lobes lobes = lobes_of(wo);
         return {lobes.base * (transmittance_ratio(wi) * inv_pi), cosine_hemisphere_pdf(wi.z) * lobes.base_probability};
     }
 
     /// Takes the coat or, by `u.z`, the base with the probability of its part of the albedo.
-    Maybe<BsdfSample> sample(const Vec3& wo, const Vec3& u, Transport) const {
+    [[gnu::noinline]] Maybe<BsdfSample> sample(const Vec3& wo, const Vec3& u, Transport) const {
         if (!(wo.z > 0)) return {};
         const Lobes lobes = lobes_of(wo);
         if (u.z < lobes.coat_probability)

@@ -49,7 +49,7 @@ struct Principled {
 
     /// The value is reciprocal: f(wo, wi) = f(wi, wo) for reflection, and for refraction but for the factor 1 / eta^2
     /// that radiance gets and importance does not.
-    BsdfValue evaluate(const Vec3& wo, const Vec3& wi, Transport transport) const {
+    [[gnu::noinline]] BsdfValue evaluate(const Vec3& wo, const Vec3& wi, Transport transport) const {
         const float sides = wo.z * wi.z;
         if (wo.z < 0 && !(refracting() > 0)) return {};
         if (sides > 0) return wo.z > 0 ? front(wo, wi) : back(wo, wi);
@@ -59,7 +59,7 @@ struct Principled {
 
     /// Diffuse reflection and sheen by cosine, the clear coat by its normals, GGX by the visible ones, of which Fresnel
     /// reflects or refracts.
-    Maybe<BsdfSample> sample(const Vec3& wo, const Vec3& u, Transport transport) const {
+    [[gnu::noinline]] Maybe<BsdfSample> sample(const Vec3& wo, const Vec3& u, Transport transport) const {
         if (wo.z == 0 || (wo.z < 0 && !(refracting() > 0))) return {};
         const Lobes lobes = lobes_of(wo.z);
         if (!(lobes.diffuse + lobes.clearcoat + lobes.specular > 0)) return {};

@@ -32,7 +32,7 @@ struct PrincipledThin {
     /// Reciprocal but for one thing: Mitsuba drops specular transmission when the direction where the path goes is in
     /// front of the facet, as it may be when it grazes the sheet. For importance the other direction is asked, so that
     /// paths from both ends see the same surface.
-    BsdfValue evaluate(const Vec3& wo, const Vec3& wi, Transport transport) const {
+    [[gnu::noinline]] BsdfValue evaluate(const Vec3& wo, const Vec3& wi, Transport transport) const {
         const float sides = wo.z * wi.z;
         if (!(sides > 0 || sides < 0)) return {};
         const Vec3 o = wo.z > 0 ? wo : -wo;
@@ -71,7 +71,7 @@ struct PrincipledThin {
     }
 
     /// Diffuse light by cosine, specular light by the visible normals.
-    Maybe<BsdfSample> sample(const Vec3& wo, const Vec3& u, Transport transport) const {
+    [[gnu::noinline]] Maybe<BsdfSample> sample(const Vec3& wo, const Vec3& u, Transport transport) const {
         if (wo.z == 0) return {};
         const Vec3 o = wo.z > 0 ? wo : -wo;
         const Lobes lobes = lobes_of(o.z);

@@ -26,7 +26,7 @@ struct RoughDielectric {
     Rgb reflectance{1};    ///< factor on reflected light, 0 to 1
     Rgb transmittance{1};  ///< factor on refracted light, 0 to 1
 
-    BsdfValue evaluate(const Vec3& wo, const Vec3& wi, Transport transport) const {
+    [[gnu::noinline]] BsdfValue evaluate(const Vec3& wo, const Vec3& wi, Transport transport) const {
         if (wo.z == 0 || wi.z == 0) return {};
         const Microfacets facets(distribution, alpha_u, alpha_v);
         const float relative = wo.z > 0 ? eta : 1 / eta;
@@ -59,7 +59,7 @@ struct RoughDielectric {
     /// Reflects or refracts at a visible normal, with the probability of Fresnel's reflectance there. That, D and
     /// G1(wo) cancel: the weight is G1(wi). Refracted radiance is scaled by 1 / eta^2, importance is not (as in
     /// `Dielectric`).
-    Maybe<BsdfSample> sample(const Vec3& wo, const Vec3& u, Transport transport) const {
+    [[gnu::noinline]] Maybe<BsdfSample> sample(const Vec3& wo, const Vec3& u, Transport transport) const {
         if (wo.z == 0) return {};
         const Microfacets facets(distribution, alpha_u, alpha_v);
         const Vec3 above = upward(wo);

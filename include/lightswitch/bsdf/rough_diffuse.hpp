@@ -19,7 +19,7 @@ struct RoughDiffuse {
     Rgb reflectance{0.5f};         ///< of the facets, 0 to 1
     bool use_fast_approx = false;  ///< the paper's qualitative model: without light that meets two facets
 
-    BsdfValue evaluate(const Vec3& wo, const Vec3& wi, Transport) const {
+    [[gnu::noinline]] BsdfValue evaluate(const Vec3& wo, const Vec3& wi, Transport) const {
         if (!(wo.z > 0 && wi.z > 0)) return {};
         const float sin_o = std::sqrt(wo.x * wo.x + wo.y * wo.y), sin_i = std::sqrt(wi.x * wi.x + wi.y * wi.y);
         // `a` is the direction closer to the horizon, `b` the other one.
@@ -50,7 +50,7 @@ struct RoughDiffuse {
         return {reflectance * (inv_pi * (Rgb(once) + twice * reflectance)), pdf};
     }
 
-    Maybe<BsdfSample> sample(const Vec3& wo, const Vec3& u, Transport transport) const {
+    [[gnu::noinline]] Maybe<BsdfSample> sample(const Vec3& wo, const Vec3& u, Transport transport) const {
         if (!(wo.z > 0)) return {};
         return detail::sample_of_all_lobes(*this, wo, cosine_hemisphere(Vec2(u)), transport);
     }

@@ -24,7 +24,7 @@ struct RoughPlastic {
     /// again.
     const RoughCoat* coat = &rough_coat(distribution, alpha, eta);
 
-    BsdfValue evaluate(const Vec3& wo, const Vec3& wi, Transport) const {
+    [[gnu::noinline]] BsdfValue evaluate(const Vec3& wo, const Vec3& wi, Transport) const {
         if (!(wo.z > 0 && wi.z > 0)) return {};
         const float entering = coat->transmittance(wo.z);
         const float coat_probability = probability_of_coat(entering);
@@ -44,7 +44,7 @@ struct RoughPlastic {
     }
 
     /// Chooses the coat or the base by `u.z`, as Mitsuba does: what the coat keeps out counts as reflected.
-    Maybe<BsdfSample> sample(const Vec3& wo, const Vec3& u, Transport transport) const {
+    [[gnu::noinline]] Maybe<BsdfSample> sample(const Vec3& wo, const Vec3& u, Transport transport) const {
         if (!(wo.z > 0)) return {};
         if (!(u.z < probability_of_coat(coat->transmittance(wo.z))))
             return detail::sample_of_all_lobes(*this, wo, cosine_hemisphere(Vec2(u)), transport);

@@ -25,7 +25,7 @@ struct ThinDielectric {
 
     /// Reflects with the probability of the pane's reflectance, for which `u.x` is drawn. Behind the pane light is in
     /// the same medium as before it: nothing is scaled.
-    Maybe<BsdfSample> sample(const Vec3& wo, const Vec3& u, Transport) const {
+    [[gnu::noinline]] Maybe<BsdfSample> sample(const Vec3& wo, const Vec3& u, Transport) const {
         if (wo.z == 0) return {};
         const float face = fresnel_dielectric(std::abs(wo.z), eta).reflectance;
         if (u.x < 2 * face / (1 + face))

@@ -27,7 +27,7 @@ struct Ward {
     Rgb diffuse_reflectance{0.5f};   ///< 0 to 1, together with the other
     Rgb specular_reflectance{0.2f};  ///< of the lobe
 
-    BsdfValue evaluate(const Vec3& wo, const Vec3& wi, Transport) const {
+    [[gnu::noinline]] BsdfValue evaluate(const Vec3& wo, const Vec3& wi, Transport) const {
         if (!(wo.z > 0 && wi.z > 0)) return {};
         const float probability = detail::lobe_probability(specular_reflectance, diffuse_reflectance);
         BsdfValue result{diffuse_reflectance * inv_pi, {(1 - probability) * cosine_hemisphere_pdf(wi.z).value}};
@@ -49,7 +49,7 @@ struct Ward {
     }
 
     /// Chooses the lobe by `u.z`, and there a half vector with Gaussian slopes.
-    Maybe<BsdfSample> sample(const Vec3& wo, const Vec3& u, Transport transport) const {
+    [[gnu::noinline]] Maybe<BsdfSample> sample(const Vec3& wo, const Vec3& u, Transport transport) const {
         if (!(wo.z > 0)) return {};
         if (!(u.z < detail::lobe_probability(specular_reflectance, diffuse_reflectance)))
             return detail::sample_of_all_lobes(*this, wo, cosine_hemisphere(Vec2(u)), transport);
