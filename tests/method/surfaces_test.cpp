@@ -1,13 +1,17 @@
-// All surface models, layers over them, and instances, against Mitsuba 3.9.1: tests/data/surfaces.
+// All surface models, layers over them, and instances, against Mitsuba 3.9.1: tests/data/surfaces; and methods against
+// each other on random scenes of them.
 
 #include "method/reference.hpp"
+#include "support/random_surfaces.hpp"
 
 #include <lightswitch/method/bdpt.hpp>
-#if __has_include(<pugixml.hpp>)
-#include <lightswitch/load/mitsuba.hpp>
+#include <lightswitch/scene/any_scene.hpp>
 
 using namespace lightswitch;
 using namespace lightswitch::test;
+
+#if __has_include(<pugixml.hpp>)
+#include <lightswitch/load/mitsuba.hpp>
 
 // False alarm: 1e-3 for the tiles of each comparison. Where Mitsuba is not exact (its fits of Beckmann's masking and of
 // what plastic reflects inside, up to 0.4 % of a tile), the tiles are compared at the noise of fewer samples.
@@ -17,9 +21,9 @@ namespace {
 constexpr int mitsuba_samples = 8192;
 
 auto surfaces(const std::string& name) {
-    return reference(build_scene<TexturedBsdfs, AllLights>(
-                         load_mitsuba(LIGHTSWITCH_TESTS_DIR "/data/surfaces/" + name + ".xml")),
-                     mitsuba_samples, "surfaces");
+    return reference(
+        build_scene<TexturedBsdfs, AllLights>(load_mitsuba(LIGHTSWITCH_TESTS_DIR "/data/surfaces/" + name + ".xml")),
+        mitsuba_samples, "surfaces");
 }
 
 void check_both(const std::string& name, int depth, const Effort& effort) {
@@ -46,3 +50,22 @@ TEST_CASE("surfaces: instances and a textured lamp look as in Mitsuba") {
 }
 
 #endif
+
+// False alarm: 1e-3 in all comparisons together.
+TEST_CASE("surfaces: methods agree on random ones, for every path length") {
+    constexpr int scenes = 4, depths[] = {2, 3, 5};
+    constexpr int comparisons = 2 * scenes * static_cast<int>(std::size(depths));
+    for (std::uint32_t seed = 1; seed <= scenes; ++seed) {
+        const TexturedScene scene = build_scene<TexturedBsdfs, AllLights>(random_surfaces(seed));
+        for (const int depth : depths) {
+            const auto nee = replicate(scene, PathTracerNee{.max_depth = depth, .rr_depth = 1}, 8, 16, 64);
+            const auto check = [&](const auto& method, int samples) {
+                const auto ours = replicate(scene, method, 8, 16, samples, Sampling::independent, 1001);
+                const Comparison comparison = compare(ours, nee, 1e-3, comparisons);
+                CHECK_MESSAGE(comparison.agree(), scene.name(), ", ", method.name, ", depth ", depth, ": ", comparison);
+            };
+            check(PathTracer{.max_depth = depth}, 128);
+            check(Bdpt{.max_depth = depth, .rr_depth = 1}, 32);
+        }
+    }
+}
