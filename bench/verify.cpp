@@ -30,10 +30,12 @@ namespace ls = lightswitch;
 
 /// Returns the number of bugs that were missed or found at the wrong path length.
 int bugs(double seconds, const std::string& only) {
-    std::printf("%-44s %-26s %9s %9s %8s %7s %7s\n", "planted bug", "scene", "found", "seconds", "samples", "length",
+    std::printf("%-58s %-26s %9s %9s %8s %7s %7s\n", "planted bug", "scene", "found", "seconds", "samples", "length",
                 "should");
     int count = 0, found = 0, soon = 0, located = 0, with_length = 0;
-    for (const auto& bug : ls::test::planted_bugs()) {
+    std::vector<ls::test::PlantedBug> all = ls::test::planted_bugs();
+    for (auto& bug : ls::test::surface_bugs()) all.push_back(std::move(bug));
+    for (const auto& bug : all) {
         if (!only.empty() && bug.name.find(only) == std::string_view::npos) continue;
         const auto [wrong, right] = bug.make();
         const ls::Verdict v = ls::verify(wrong, right, {.seconds = seconds, .tolerance = 0});
@@ -43,7 +45,7 @@ int bugs(double seconds, const std::string& only) {
         soon += good && v.found_after <= 10;
         with_length += bug.first_length > 0;
         located += bug.first_length > 0 && v.first_wrong_length == bug.first_length;
-        std::printf("%-44s %-26s %9s %9.2f %8llu %7d %7d%s\n", std::string(bug.name).c_str(),
+        std::printf("%-58s %-26s %9s %9.2f %8llu %7d %7d%s\n", std::string(bug.name).c_str(),
                     std::string(bug.scene).c_str(), good ? "yes" : "NO", v.found_after,
                     static_cast<unsigned long long>(v.samples), v.first_wrong_length, bug.first_length,
                     v.first_wrong_length == bug.first_length ? "" : "  <- other length");

@@ -34,7 +34,10 @@ struct CorrectPair {
     std::function<std::pair<Estimator, Estimator>()> make;
 };
 
+/// Mistakes in methods, surface models, lights and random numbers.
 std::vector<PlantedBug> planted_bugs();
+/// Mistakes about all surface models, layers, textures, instances and lights that another description makes, too.
+std::vector<PlantedBug> surface_bugs();
 std::vector<CorrectPair> correct_pairs();
 
 // The parts of `planted_bugs`, by where the mistake is.
