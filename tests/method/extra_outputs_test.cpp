@@ -90,7 +90,11 @@ TEST_CASE("albedo: the walls of the Cornell box have their colours, the lamp is 
 TEST_CASE("albedo: what the model says, or its Phong terms, or grey; never above 1") {
     CHECK(detail::albedo_of(Outspoken{{}, Rgb(0.1f, 0.2f, 0.3f)}) == Rgb(0.1f, 0.2f, 0.3f));
     CHECK(detail::albedo_of(Silent{}) == Rgb(0.5f));
-    const RoughConductor gold{.alpha = 0.3f, .eta = {0.14f, 0.37f, 1.44f}, .k = {3.98f, 2.39f, 1.6f}};
+    const RoughConductor gold{.distribution = Facets::ggx,
+                              .alpha_u = 0.3f,
+                              .alpha_v = 0.3f,
+                              .eta = {0.14f, 0.37f, 1.44f},
+                              .k = {3.98f, 2.39f, 1.6f}};
     CHECK(seen(build(describe_plane(gold)), Albedo{}, middle) == fresnel_conductor(1, gold.eta, gold.k));
     SceneDescription<Outspoken> own;
     const std::size_t bright = own.add(Outspoken{{}, Rgb(0.25f, 7, -1)});

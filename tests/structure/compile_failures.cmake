@@ -36,7 +36,7 @@ foreach(option IN ITEMS -ffast-math -ffinite-math-only)
                          ${option})
 endforeach()
 
-expect_compile_failure(kinds_of_bsdfs scenes.cpp 1 "at most 31 kinds of surface models")
+expect_compile_failure(kinds_of_bsdfs scenes.cpp 1 "at most 30 kinds of surface models")
 expect_compile_failure(kinds_of_lights scenes.cpp 2 "at most 31 kinds of lights")
 set(deleted_session "(use of|call to) deleted (function|constructor).*Session")
 expect_compile_failure(session_of_temporary scenes.cpp 3 "${deleted_session}")

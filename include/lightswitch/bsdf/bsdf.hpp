@@ -62,6 +62,7 @@ struct PhongTerms {
 /// - `static constexpr bool partly_specular = true` says that beside smooth lobes there are Dirac distributions: those
 ///   come from `sample` alone, with a weight that is divided by the probability of the lobe; `evaluate` knows the
 ///   smooth lobes, and its density integrates to their probability;
+/// - `has_dirac_lobe()` says the same of the parameters at hand;
 /// - `transmits_light()` is false where light does not get through with the parameters at hand;
 /// - `isotropic()` is false when turning the surface around its normal changes something.
 template <class B>
@@ -99,6 +100,13 @@ inline constexpr bool partly_specular = [] {
     if constexpr (requires { B::partly_specular; }) return B::partly_specular;
     else return false;
 }();
+
+/// Whether some lobe of this model is a Dirac distribution, with its parameters.
+template <class B>
+bool has_dirac_lobe(const B& bsdf) {
+    if constexpr (requires { bsdf.has_dirac_lobe(); }) return bsdf.has_dirac_lobe();
+    else return B::specular || partly_specular<B>;
+}
 
 namespace detail {
 

@@ -56,6 +56,12 @@ using model_of = typename detail::ModelOf<M>::type;
 
 template <PlacedMaterial M>
 inline constexpr bool transmits<M> = transmits<model_of<M>>;
+/// Of any place, where the material says nothing of it.
+template <PlacedMaterial M>
+bool has_dirac_lobe(const M& material) {
+    if constexpr (requires { material.has_dirac_lobe(); }) return material.has_dirac_lobe();
+    else return model_of<M>::specular || partly_specular<model_of<M>>;
+}
 
 /// A point on a surface of a scene in which materials differ from place to place, with the model that was found there.
 template <class... M>

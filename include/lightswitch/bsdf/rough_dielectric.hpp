@@ -91,6 +91,8 @@ struct RoughDielectric {
                           .eta = fresnel.eta};
     }
 
+    /// Where nothing is refracted light goes straight on.
+    bool has_dirac_lobe() const { return std::abs(eta - 1) < 1e-4f; }
     bool isotropic() const { return alpha_u == alpha_v; }
     std::string problem() const;
 

@@ -182,10 +182,9 @@ Rgb gather_camera_subpath(const auto& scene, const Ray& ray, auto& sampler, cons
                 try_connection(connect(scene, y, z, at_z, merge_weights), y.edges + 1, z.edges + 1);
             }
             sum += at_vertex(z, at_z);
-        } else if (limits.left_out.mirrored && z.edges == 1) {
-            return sum;
         }
         if (!path.scatter(scene, direction, choices, limits.rr_depth)) return sum;
+        if (limits.left_out.mirrored && z.edges == 1 && path.left_specularly()) return sum;
     }
 }
 

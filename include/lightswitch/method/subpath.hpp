@@ -175,6 +175,7 @@ public:
 
         const double cosine = std::abs(dot(at.normal, out));
         PartialWeights& w = vertex_.weights;
+        left_specularly_ = scattered->specular;
         if (scattered->specular) {  // nothing can connect or merge here; the densities of both directions cancel
             const double back = heuristic(cosine * double(scattered->reversal));
             w = {.last = 0, .connections = w.connections * back, .merges = w.merges * back};
@@ -197,6 +198,8 @@ public:
     const Vec3& previous_normal() const { return previous_normal_; }
     /// Whether the path starts at a point or directional light.
     bool from_dirac_light() const { return emission_.dirac; }
+    /// Whether it left the vertex at hand by a Dirac lobe.
+    bool left_specularly() const { return left_specularly_; }
     /// What the path carries along its ray.
     Rgb carried() const { return start_ * beta_; }
 
@@ -204,6 +207,7 @@ private:
     Ray ray_;
     PathVertex<Point> vertex_;
     Rgb start_{1}, beta_{1};
+    bool left_specularly_ = false;
     float eta_ = 1;  // product of the relative indices of refraction crossed, for roulette
     Vec3 previous_{0}, previous_normal_{0};
     MergeWeights merge_weights_;
@@ -230,9 +234,9 @@ void trace_light_subpath(const auto& scene, auto& sampler, const PathLimits& lim
     const bool caustic = !(limits.left_out.dirac_caustic && path.from_dirac_light());
     while ((limits.max_depth < 0 || path.vertex().edges + 2 <= limits.max_depth) && path.advance(scene)) {
         if (connectable(scene, path.vertex().point)) visit(path.vertex());
-        else if (!caustic && path.vertex().edges == 1) return;
         const Vec2 direction = sampler.next_2d(), choices = sampler.next_2d();
         if (!path.scatter(scene, direction, choices, limits.rr_depth)) return;
+        if (!caustic && path.vertex().edges == 1 && path.left_specularly()) return;
     }
 }
 

@@ -122,12 +122,12 @@ public:
             });
     }
 
-    /// Whether the scene has a material that is a mirror or clear glass: one whose lobes are all Dirac distributions.
+    /// Whether the scene has a material some lobe of which is a Dirac distribution: a mirror, clear glass, smooth plastic.
     bool has_specular() const {
-        return [&]<std::size_t... I>(std::index_sequence<I...>) {
-            return ((model_of<B>::specular && !std::get<I>(data().bsdfs).empty()) || ...);
-        }
-        (std::index_sequence_for<B...>{});
+        const auto any = [](const auto& list) {
+            return std::any_of(list.begin(), list.end(), [](const auto& bsdf) { return has_dirac_lobe(bsdf); });
+        };
+        return std::apply([&](const auto&... lists) { return (any(lists) || ...); }, data().bsdfs);
     }
 
     // --- lights
