@@ -4,7 +4,7 @@
 
 #include <lightswitch/core/file.hpp>
 #include <lightswitch/load/mesh_file.hpp>
-#include <lightswitch/load/text.hpp>
+#include <lightswitch/load/number.hpp>
 
 #include <bit>
 #include <filesystem>
@@ -152,7 +152,7 @@ private:
             expect("vertex");
             for (int c = 0; c < 3; ++c) {
                 const std::string_view text = word();
-                const auto value = parse_number(text);
+                const auto value = parse_number_fast(text);
                 if (!value)
                     fail(where_, text.empty() ? "the file ends too early" : quote(text) + " is not a finite number");
                 corner[c] = *value;
@@ -205,8 +205,8 @@ private:
 }  // namespace detail
 
 inline Mesh load_stl(const std::filesystem::path& path, FileNormals, Notices* notices) {
-    const std::string bytes = read_file(path, detail::max_mesh_bytes);
-    return detail::StlReader(bytes, path.string()).read(notices);
+    const FileBytes file(path, detail::max_mesh_bytes);
+    return detail::StlReader(file.view(), path.string()).read(notices);
 }
 
 }  // namespace lightswitch
