@@ -14,6 +14,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 namespace lightswitch {
 
@@ -144,9 +145,12 @@ inline void check_file_writable(const std::filesystem::path& path) {
     detail::TemporaryFile{target};
 }
 
-/// The bytes of a regular file. Throws `Error` when there is none, it cannot be read, or it exceeds `max_bytes`.
-inline std::string read_file(const std::filesystem::path& path, std::uintmax_t max_bytes) {
-    const Origin where = detail::file_origin(path);
+namespace detail {
+
+/// A regular file opened for reading, and how many bytes it has. Throws `Error` when there is none, it cannot be read,
+/// or it exceeds `max_bytes`.
+inline std::pair<FileHandle, std::size_t> open_file(const std::filesystem::path& path, std::uintmax_t max_bytes) {
+    const Origin where = file_origin(path);
     std::error_code error;
     const auto status = std::filesystem::status(path, error);
     if (!std::filesystem::exists(status)) fail(where, "no such file");
@@ -156,10 +160,19 @@ inline std::string read_file(const std::filesystem::path& path, std::uintmax_t m
     if (error) fail(where, "cannot be read: " + error.message());
     if (size > max_bytes)
         fail(where, "has " + std::to_string(size) + " bytes; at most " + std::to_string(max_bytes) + " are read");
-    const detail::FileHandle file(std::fopen(path.string().c_str(), "rb"));
-    if (!file) fail(where, "cannot be read: " + detail::errno_text(errno));
-    std::string bytes(static_cast<std::size_t>(size), '\0');
-    if (std::fread(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) fail(where, "reading failed");
+    FileHandle file(std::fopen(path.string().c_str(), "rb"));
+    if (!file) fail(where, "cannot be read: " + errno_text(errno));
+    return {std::move(file), static_cast<std::size_t>(size)};
+}
+
+}  // namespace detail
+
+/// The bytes of a regular file. Throws `Error` when there is none, it cannot be read, or it exceeds `max_bytes`.
+inline std::string read_file(const std::filesystem::path& path, std::uintmax_t max_bytes) {
+    const auto [file, size] = detail::open_file(path, max_bytes);
+    std::string bytes(size, '\0');
+    if (std::fread(bytes.data(), 1, bytes.size(), file.get()) != bytes.size())
+        fail(detail::file_origin(path), "reading failed");
     return bytes;
 }
 

@@ -33,11 +33,12 @@ inline constexpr std::string_view guessed_normal =
 /// Gathers the notices of one file.
 class FileNotices {
 public:
-    void add(const Origin& where, std::string_view what) {
+    void add(const Origin& where, std::string_view what, std::size_t count = 1) {
+        if (count == 0) return;
         const auto same = [&](const Kind& kind) { return kind.what == what; };
         const auto found = std::find_if(kinds_.begin(), kinds_.end(), same);
-        if (found != kinds_.end()) ++found->count;
-        else kinds_.push_back({where, std::string(what), 1});
+        if (found != kinds_.end()) found->count += count;
+        else kinds_.push_back({where, std::string(what), count});
     }
 
     /// Appends them to `notices`, unless it is null.
