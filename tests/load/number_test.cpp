@@ -1,114 +1,97 @@
-// Numbers and pieces of large text files, as the loaders of meshes read them.
+#include <lightswitch/load/number.hpp>
 
-#include "load/files.hpp"
-
-#include <lightswitch/load/text.hpp>
-#include <lightswitch/load/text_file.hpp>
+#include <doctest/doctest.h>
 
 #include <bit>
-#include <optional>
+#include <cstdio>
+#include <random>
 
 using namespace lightswitch;
-using namespace lightswitch::test;
+using namespace lightswitch::detail;
 
 namespace {
 
-/// What `read_number` makes of all of the text, if it does.
-std::optional<double> quick(const std::string& text) {
-    double value = 0;
-    const char* const end = detail::read_number(text.c_str(), value);
-    if (end == nullptr || *end != '\0') return {};
-    return value;
+/// Both readers must agree: to the last bit, and in what is no number.
+bool agree(std::string_view word) {
+    const auto exact = parse_number(word), fast = parse_number_fast(word);
+    if (exact.has_value() != fast.has_value()) return false;
+    return !exact || std::bit_cast<std::uint64_t>(*exact) == std::bit_cast<std::uint64_t>(*fast);
 }
-
-bool same(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
 
 }  // namespace
 
-TEST_CASE("numbers that are read fast are those that the standard library reads, to the bit") {
-    std::minstd_rand random(1);
-    const auto below = [&](unsigned n) { return static_cast<unsigned>(random()) % n; };
-    const auto digits = [&](unsigned count, bool zeros) {
-        std::string text;
-        for (unsigned i = 0; i < count; ++i) text += zeros && 2 * i < count ? '0' : static_cast<char>('0' + below(10));
-        return text;
+TEST_CASE("numbers are read fast and to the last bit") {
+    for (const char* word : {"0",
+                             "-0",
+                             "1.",
+                             ".5",
+                             "-.5e1",
+                             "123456789012345678901234567890",
+                             "0.1234567890123456789012",
+                             "9007199254740991",
+                             "9007199254740993",
+                             "9007199254740993e1",
+                             "1e22",
+                             "1e23",
+                             "1e-22",
+                             "1e-23",
+                             "1E+2",
+                             "5e-324",
+                             "1e308",
+                             "1e309",
+                             "0e999",
+                             "00000000000000000000001.5",
+                             "8.5e00010",
+                             "18446744073709551617",
+                             "99999999999999999999",
+                             "0.000000000000000000001"})
+        CHECK_MESSAGE(agree(word), word);
+    for (const char* word :
+         {"",     "-",     "+",         ".",       "-.", "e5", "1e",  "1e+", "1e-", "--1",
+          "1..2", "1.2.3", "1-",        "0x10",    "1 ", " 1", "1,5", "nan", "inf", "1e99999999999999999999",
+          "\xff", "1\xff", "12345678/", "1234567:"})
+        CHECK_MESSAGE(agree(word), word);
+}
+
+TEST_CASE("numbers at random are read to the last bit, wherever they stand") {
+    std::mt19937_64 random(1);
+    const auto below = [&](std::uint64_t n) { return random() % n; };
+    int wrong = 0;
+    for (int i = 0; i < 300000; ++i) {
+        char text[64];
+        const double any = std::bit_cast<double>(random());
+        const double usual = static_cast<double>(static_cast<std::int64_t>(random())) / 1e15;
+        const double value = below(4) == 0 ? any : usual;
+        const auto digits = static_cast<int>(below(20));
+        static constexpr const char* formats[] = {"%.*g", "%.*e", "%.*f"};
+        const char* const format = formats[below(std::abs(value) < 1e20 ? 3 : 2)];
+        std::snprintf(text, sizeof text, format, digits, value);
+        std::string word = text;
+        if (below(8) == 0 && !word.empty()) word[below(word.size())] = static_cast<char>(below(256));
+        // What follows the word must not be looked at, even if it is more of a number.
+        const std::string line = word + "12345678";
+        wrong += !agree(std::string_view(line).substr(0, word.size()));
+    }
+    CHECK(wrong == 0);
+}
+
+TEST_CASE("integers are read up to 18 digits") {
+    const auto read = [](std::string_view text) -> std::pair<std::uint64_t, std::ptrdiff_t> {
+        std::uint64_t value = 0;
+        const char* const end = read_simple_integer(text.data(), text.data() + text.size(), value);
+        if (end == nullptr) return {0, -1};
+        return {value, end - text.data()};
     };
-    int read = 0;
-    constexpr int count = 200000;
-    for (int i = 0; i < count; ++i) {
-        std::string text = below(3) == 0 ? "-" : below(10) == 0 ? "+" : "";
-        text += digits(below(below(2) ? 3 : 20), false);
-        if (below(4)) text += "." + digits(below(22), below(4) == 0);
-        if (below(4) == 0) text += (below(2) ? "e" : "E-") + std::to_string(below(30));
-        const auto number = quick(text);
-        if (!number) continue;
-        ++read;
-        const auto exact = detail::parse_number(text);
-        REQUIRE_MESSAGE(exact, text);
-        REQUIRE_MESSAGE(same(*number, *exact), text);
-    }
-    CHECK(read > count / 2);
-}
-
-TEST_CASE("numbers halfway between two doubles, or nearly, are rounded as they must be") {
-    int read = 0;
-    for (std::uint64_t i = 0; i < 2000; ++i) {
-        const std::uint64_t integer = (std::uint64_t(1) << 53) + 2 * i * i * 1234567 + 1;
-        for (const char* rest : {"", ".0", ".1", ".001", "e0", "0e-1"}) {
-            const std::string text = std::to_string(integer) + rest;
-            if (const auto number = quick(text)) {
-                ++read;
-                REQUIRE_MESSAGE(same(*number, *detail::parse_number(text)), text);
-            }
-        }
-    }
-    CHECK(read > 11000);
-    CHECK(*quick("9007199254740993") == 9007199254740992);  // 2^53 + 1: to the even one
-    CHECK(*quick("9007199254740993.1") == 9007199254740994);
-    CHECK(same(*quick("-0"), -0.0));
-}
-
-TEST_CASE("what is no number, or one with too many digits, is left to others") {
-    for (const char* text : {"", "+", "-", ".", "-.", "e5", "1e", "1e+", "+-1", "--1", "nan", "inf", "0x10",
-                             "12345678901234567890", "1e999", "1e99999999999", "1e-400"})
-        CHECK_MESSAGE(!quick(text), text);
-    CHECK(*quick("00000000000000000000000000012.5") == 12.5);
-    CHECK(*quick("1.") == 1);
-    CHECK(*quick(".5e1") == 5);
-}
-
-TEST_CASE("pieces of a text file are whole statements, and all of it") {
-    const Folder folder;
-    const std::string texts[] = {"",
-                                 "\n",
-                                 "v 1\nv 2\n",
-                                 "a\r\nb\r\n\r\nc",
-                                 "a\rb\r\rc\r",
-                                 "v \\\n 1 \\\r\n 2 \\ \t\n 3\nv 4",
-                                 "\\\r\r\\\r\n\n\\\n",
-                                 std::string(300, 'x') + "\n" + std::string(5, '\n') + "y",
-                                 "\r\n\n\r\r\n\\\r\n\r\n",
-                                 std::string("a\0b\nc", 5)};
-    for (const std::string& text : texts)
-        for (std::size_t piece = 1; piece < 40; ++piece) {
-            const auto path = folder.write("text", text);
-            detail::TextFile file(path, 1000, piece);
-            std::string all;
-            for (std::string_view part = file.next(); !part.empty(); part = file.next()) {
-                all += part;
-                if (all.size() == text.size()) {
-                    CHECK(part.data()[part.size()] == '\0');
-                    continue;
-                }
-                REQUIRE(detail::is_line_end(all.back()));
-                CHECK(!(all.back() == '\r' && text[all.size()] == '\n'));
-                // One end of a line, then blanks, then no backslash.
-                std::string_view line = all;
-                line.remove_suffix(line.ends_with("\r\n") ? 2 : 1);
-                line = line.substr(0, line.find_last_not_of(" \t") + 1);
-                CHECK(!line.ends_with('\\'));
-            }
-            CHECK(all == text);
-        }
-    CHECK(contains(message_of([&] { detail::TextFile(folder.write("text", "12345"), 4); }), "at most 4 are read"));
+    using Result = std::pair<std::uint64_t, std::ptrdiff_t>;
+    CHECK(read("") == Result{0, -1});
+    CHECK(read("x") == Result{0, -1});
+    CHECK(read("-1") == Result{0, -1});
+    CHECK(read("0 1") == Result{0, 1});
+    CHECK(read("12345678") == Result{12345678, 8});
+    CHECK(read("123456789/2") == Result{123456789, 9});
+    CHECK(read("999999999999999999") == Result{999999999999999999u, 18});
+    CHECK(read("1000000000000000000") == Result{0, -1});
+    CHECK(read("18446744073709551617") == Result{0, -1});
+    for (std::uint64_t i = 0, value = 1; i < 18; ++i, value = value * 10 + i % 10)
+        CHECK(read(std::to_string(value)) == Result{value, static_cast<std::ptrdiff_t>(i + 1)});
 }

@@ -1,91 +1,105 @@
 #pragma once
 
-// Numbers read fast and exactly from text that something ends.
+// Decimal numbers, read many times as fast as `std::from_chars` does, and to the same last bit.
 
-#include <array>
+#include <lightswitch/load/decimal.hpp>
+#include <lightswitch/load/text.hpp>
+
 #include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
+#include <cfloat>
+#include <cstring>
 
 namespace lightswitch::detail {
 
-inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
-inline bool is_blank(char c) { return c == ' ' || c == '\t'; }
-inline bool is_line_end(char c) { return c == '\n' || c == '\r'; }
+/// Reads a number as most files write it, from `at` on: digits with perhaps a minus, a point and an exponent. Returns
+/// where it ends, or null, when there is none or only `parse_number` can round it: with more than 19 digits that count,
+/// or far from 1 (`nearest_double`).
+const char* read_simple_number(const char* at, const char* end, double& value);
+/// The same for an integer of at most 18 digits without a sign.
+const char* read_simple_integer(const char* at, const char* end, std::uint64_t& value);
+/// What `parse_number` returns, sooner.
+std::optional<double> parse_number_fast(std::string_view word);
 
-/// The double nearest to digits * 10^exponent (of two, the even one), where that is quickly told; NaN elsewhere.
-///
-/// What is exact in double takes one division that rounds once (Clinger, "How to read floating point numbers
-/// accurately", 1990). Otherwise the quotient is made in integers, with its remainder as the bit that tells how to round.
-inline double nearest_double(std::uint64_t digits, int exponent) {
-    static constexpr auto powers = [] {
-        std::array<double, 23> result{1};
-        for (std::size_t i = 1; i < result.size(); ++i) result[i] = 10 * result[i - 1];
-        return result;
-    }();
-    static constexpr auto integer_powers = [] {
-        std::array<std::uint64_t, 20> result{1};
-        for (std::size_t i = 1; i < result.size(); ++i) result[i] = 10 * result[i - 1];
-        return result;
-    }();
-    if (digits <= std::uint64_t(1) << 53 && exponent >= -22 && exponent <= 22) {
-        const auto number = static_cast<double>(digits);
-        return exponent < 0 ? number / powers[static_cast<std::size_t>(-exponent)]
-                            : number * powers[static_cast<std::size_t>(exponent)];
+/// Eight characters, the first in the lowest byte; zeros past the end.
+inline std::uint64_t load_eight(const char* at, const char* end) {
+    std::uint64_t result = 0;
+    if constexpr (std::endian::native == std::endian::little) {
+        if (end - at >= 8) std::memcpy(&result, at, 8);
+        else std::memcpy(&result, at, static_cast<std::size_t>(end - at));
+    } else {
+        for (int i = 0; i < 8 && at + i < end; ++i)
+            result |= std::uint64_t(static_cast<unsigned char>(at[i])) << (8 * i);
     }
-    if (digits == 0 || exponent > 0 || exponent < -19) return std::numeric_limits<double>::quiet_NaN();
-    __extension__ using Wide = unsigned __int128;
-    const std::uint64_t divisor = integer_powers[static_cast<std::size_t>(-exponent)];
-    // Both with their highest bit set: then the quotient has 63 or 64 bits.
-    const int up = std::countl_zero(digits), divisor_up = std::countl_zero(divisor);
-    const std::uint64_t scaled = divisor << divisor_up;
-    const Wide dividend = Wide(digits << up) << 63;
-    const auto quotient = static_cast<std::uint64_t>(dividend / scaled);
-    const bool is_exact = static_cast<std::uint64_t>(dividend) == quotient * scaled;
-    const auto power_of_two = static_cast<std::uint64_t>(1023 - 63 + divisor_up - up);
-    return static_cast<double>(quotient | (is_exact ? 0u : 1u)) * std::bit_cast<double>(power_of_two << 52);
+    return result;
 }
 
-/// Reads a number in decimal or scientific notation, with at most 19 digits that count. Returns where it ends, or null
-/// where there is none, or one for which this is not enough: `parse_number` may know more. Some character that is no
-/// part of a number must end the text.
-inline const char* read_number(const char* text, double& value) {
-    const bool negative = *text == '-';
-    if (negative || *text == '+') ++text;
+/// Appends the digits from `at` on to `value`, modulo 2^64, and returns where they end. Takes eight at a time, without
+/// a branch on how many there are.
+inline const char* append_digits(const char* at, const char* end, std::uint64_t& value) {
+    static constexpr std::array<std::uint64_t, 9> powers{1, 10, 100, 1000, 10000, 100000, 1000000, 10000000, 100000000};
+    for (;;) {
+        std::uint64_t digits = load_eight(at, end) ^ 0x3030303030303030u;
+        // The sum has its highest bit set for 10 and more; what it carries over cannot reach a byte before that one.
+        const std::uint64_t others = ((digits + 0x7676767676767676u) | digits) & 0x8080808080808080u;
+        const auto count = static_cast<std::size_t>(std::countr_zero(others)) / 8;
+        if (count == 0) return at;
+        digits <<= 64 - 8 * count;  // zeros before them
+        digits = (digits * 10 + (digits >> 8)) & 0x00ff00ff00ff00ffu;
+        digits = (digits * 100 + (digits >> 16)) & 0x0000ffff0000ffffu;
+        digits = (digits * 10000 + (digits >> 32)) & 0x00000000ffffffffu;
+        value = value * powers[count] + digits;
+        at += count;
+        if (count < 8) return at;
+    }
+}
+
+inline const char* read_simple_number(const char* at, const char* end, double& value) {
+    if (FLT_EVAL_METHOD != 0) return nullptr;  // would round twice
+    const bool negative = at < end && *at == '-';
+    if (negative) ++at;
     std::uint64_t digits = 0;
-    const auto take_digits = [&] {
-        while (is_digit(*text)) digits = 10 * digits + static_cast<std::uint64_t>(*text++ - '0');
-    };
-    const char* const begin = text;
-    take_digits();
-    std::ptrdiff_t count = text - begin, exponent = 0;
-    if (*text == '.') {
-        const char* const point = ++text;
-        take_digits();
-        exponent = point - text;
+    const char* const first = at;
+    at = append_digits(at, end, digits);
+    std::ptrdiff_t count = at - first, exponent = 0;
+    if (at < end && *at == '.') {
+        const char* const point = at + 1;
+        at = append_digits(point, end, digits);
+        exponent = point - at;
         count -= exponent;
     }
     if (count == 0) return nullptr;
     if (count > 19) {
-        for (const char* c = begin; *c == '0' || *c == '.'; ++c) count -= *c == '0';
+        for (const char* c = first; c < at && (*c == '0' || *c == '.'); ++c) count -= *c == '0';
         if (count > 19) return nullptr;
     }
-    if (*text == 'e' || *text == 'E') {
-        ++text;
-        const bool small = *text == '-';
-        if (small || *text == '+') ++text;
-        const char* const first = text;
-        int power = 0;
-        while (is_digit(*text) && text - first < 5) power = 10 * power + (*text++ - '0');
-        if (text == first || is_digit(*text)) return nullptr;
-        exponent += small ? -power : power;
+    if (at < end && (*at == 'e' || *at == 'E')) {
+        ++at;
+        const bool small = at < end && *at == '-';
+        if (at < end && (*at == '-' || *at == '+')) ++at;
+        std::uint64_t power = 0;
+        const char* const begin = at;
+        at = append_digits(at, end, power);
+        if (at == begin || at - begin > 4) return nullptr;
+        exponent += small ? -static_cast<std::ptrdiff_t>(power) : static_cast<std::ptrdiff_t>(power);
     }
-    if (exponent < -1000 || exponent > 1000) return nullptr;
-    const double number = nearest_double(digits, static_cast<int>(exponent));
-    if (!(number >= 0)) return nullptr;
-    value = negative ? -number : number;
-    return text;
+    if (exponent < -9999 || exponent > 9999) return nullptr;
+    const double size = nearest_double(digits, static_cast<int>(exponent));
+    if (!(size >= 0)) return nullptr;
+    value = negative ? -size : size;
+    return at;
+}
+
+inline const char* read_simple_integer(const char* at, const char* end, std::uint64_t& value) {
+    value = 0;
+    const char* const last = append_digits(at, end, value);
+    return last == at || last - at > 18 ? nullptr : last;
+}
+
+inline std::optional<double> parse_number_fast(std::string_view word) {
+    double value = 0;
+    const char* const end = word.data() + word.size();
+    if (!word.empty() && read_simple_number(word.data(), end, value) == end) return value;
+    return parse_number(word);
 }
 
 }  // namespace lightswitch::detail

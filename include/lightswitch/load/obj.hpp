@@ -57,7 +57,8 @@ public:
     ObjContents read(Notices* notices) {
         TextFile file(path_, max_mesh_bytes);
         std::string_view text = without_byte_order_mark(file.next());
-        for (; !text.empty(); text = file.next())
+        for (; !text.empty(); text = file.next()) {
+            end_ = text.data() + text.size();
             while (!text.empty()) {
                 origin_.line += skipped_lines_ + 1;
                 skipped_lines_ = 0;
@@ -65,6 +66,7 @@ public:
                     text.remove_prefix(static_cast<std::size_t>(end - text.data()));
                 else statement(next_statement(text));
             }
+        }
         origin_.line = 0;
         if (contents_.mesh.triangles.empty()) fail(origin_, "contains no faces");
         finish_vertices();
@@ -95,7 +97,7 @@ private:
 
     static const char* after_line_end(const char* text) { return text + (text[0] == '\r' && text[1] == '\n' ? 2 : 1); }
 
-    static const char* usual_vector(const char* text, int fewest, int most, DVec3& result) {
+    const char* usual_vector(const char* text, int fewest, int most, DVec3& result) const {
         std::array<double, 7> numbers{};
         for (int count = 0;; ++count) {
             while (is_blank(*text)) ++text;
@@ -105,7 +107,7 @@ private:
                 return after_line_end(text);
             }
             if (count == most) return nullptr;
-            text = read_number(text, numbers[static_cast<std::size_t>(count)]);
+            text = read_simple_number(text, end_, numbers[static_cast<std::size_t>(count)]);
             if (text == nullptr || !(is_blank(*text) || is_line_end(*text))) return nullptr;
         }
     }
@@ -133,7 +135,8 @@ private:
         if (backwards) ++text;
         std::size_t number = 0;
         const char* const begin = text;
-        while (is_digit(*text) && text - begin < 10) number = 10 * number + static_cast<std::size_t>(*text++ - '0');
+        for (; *text >= '0' && *text <= '9' && text - begin < 10; ++text)
+            number = 10 * number + static_cast<std::size_t>(*text - '0');
         if (number == 0 || number > size) return nullptr;
         result = static_cast<std::uint32_t>(backwards ? size - number : number - 1);
         return text;
@@ -284,6 +287,7 @@ private:
     Origin origin_;
     FileNormals use_;
     bool with_materials_;
+    const char* end_ = nullptr;  ///< of the piece that is being read
     std::string joined_;
     int skipped_lines_ = 0;
     std::vector<DVec3> positions_, normals_;

@@ -22,6 +22,9 @@ std::optional<double> parse_number(std::string_view word);
 /// The same for an integer that fits in 64 bits.
 std::optional<std::int64_t> parse_integer(std::string_view word);
 
+inline bool is_blank(char c) { return c == ' ' || c == '\t'; }
+inline bool is_line_end(char c) { return c == '\n' || c == '\r'; }
+
 /// Cuts the first word off `text`; empty at the end. Words are separated by any of `separators`.
 std::string_view next_word(std::string_view& text, std::string_view separators = " \t\r\n");
 

@@ -3,12 +3,11 @@
 // Large text files, read piece by piece.
 
 #include <lightswitch/core/file.hpp>
-#include <lightswitch/load/number.hpp>
+#include <lightswitch/load/text.hpp>
 
 #include <algorithm>
 #include <cstring>
 #include <string_view>
-#include <tuple>
 
 namespace lightswitch::detail {
 
@@ -19,7 +18,7 @@ public:
     /// Throws `Error` as `read_file` does.
     TextFile(const std::filesystem::path& path, std::uintmax_t max_bytes, std::size_t piece = std::size_t(1) << 18)
         : path_(path), buffer_(std::make_unique_for_overwrite<char[]>(piece + 1)), capacity_(piece) {
-        std::tie(file_, unread_) = open_file(path, max_bytes);
+        file_ = open_file(path, max_bytes, unread_);
     }
 
     /// The next piece, which is good until the call after; empty at the end. An end of a line or a zero ends it.
