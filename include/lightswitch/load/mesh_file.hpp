@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace lightswitch {
@@ -65,10 +66,10 @@ inline void finish_normals(Mesh& mesh) {
     mesh.face_along_normals();
     const auto is_missing = [](const DVec3& normal) { return normal == DVec3(0); };
     if (std::none_of(mesh.normals.begin(), mesh.normals.end(), is_missing)) return;
-    Mesh computed{.positions = mesh.positions, .normals = {}, .triangles = mesh.triangles};
-    computed.smooth();
-    for (std::size_t i = 0; i < mesh.normals.size(); ++i)
-        if (is_missing(mesh.normals[i])) mesh.normals[i] = computed.normals[i];
+    const std::vector<DVec3> given = std::move(mesh.normals);
+    mesh.smooth();
+    for (std::size_t i = 0; i < given.size(); ++i)
+        if (!is_missing(given[i])) mesh.normals[i] = given[i];
 }
 
 }  // namespace detail

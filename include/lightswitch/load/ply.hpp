@@ -129,7 +129,8 @@ private:
         std::optional<PlyFaceLayout> layout;
         if (is_face && !lacks_normals_)  // where normals are missing, each face that uses one is a notice
             layout = PlyFaceLayout::of(element, *place, header_.format, mesh_.positions.size());
-        mesh_.triangles.reserve(mesh_.triangles.size() + element.count);
+        // As many as there are faces, but for a count that cannot be true.
+        if (layout) mesh_.triangles.reserve(mesh_.triangles.size() + std::min(element.count, data_.rest().size() / 6));
         for (std::size_t i = 0; i < element.count;) {
             if (layout) i += faces(element, *layout, i);
             if (i == element.count) break;
