@@ -36,6 +36,7 @@ class FileNotices {
 public:
     void add(const Origin& where, std::string_view what, std::size_t count = 1) {
         if (count == 0) return;
+        if (kinds_.size() >= most_kinds) what = "there is more of other kinds, of which nothing is said";
         const auto same = [&](const Kind& kind) { return kind.what == what; };
         const auto found = std::find_if(kinds_.begin(), kinds_.end(), same);
         if (found != kinds_.end()) found->count += count;
@@ -52,6 +53,9 @@ public:
     }
 
 private:
+    /// A file that is no such file at all would have a new kind in every line.
+    static constexpr std::size_t most_kinds = 200;
+
     struct Kind {
         Origin where;
         std::string what;
