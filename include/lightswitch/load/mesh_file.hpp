@@ -34,11 +34,13 @@ inline constexpr std::string_view guessed_normal =
 /// Gathers the notices of one file.
 class FileNotices {
 public:
-    void add(const Origin& where, std::string_view what) {
+    void add(const Origin& where, std::string_view what, std::size_t count = 1) {
+        if (count == 0) return;
+        if (kinds_.size() >= most_kinds) what = "there is more of other kinds, of which nothing is said";
         const auto same = [&](const Kind& kind) { return kind.what == what; };
         const auto found = std::find_if(kinds_.begin(), kinds_.end(), same);
-        if (found != kinds_.end()) ++found->count;
-        else kinds_.push_back({where, std::string(what), 1});
+        if (found != kinds_.end()) found->count += count;
+        else kinds_.push_back({where, std::string(what), count});
     }
 
     /// Appends them to `notices`, unless it is null.
@@ -51,6 +53,9 @@ public:
     }
 
 private:
+    /// A file that is no such file at all would have a new kind in every line.
+    static constexpr std::size_t most_kinds = 200;
+
     struct Kind {
         Origin where;
         std::string what;

@@ -2,6 +2,7 @@
 
 // Decimal numbers, read many times as fast as `std::from_chars` does, and to the same last bit.
 
+#include <lightswitch/load/decimal.hpp>
 #include <lightswitch/load/text.hpp>
 
 #include <bit>
@@ -11,10 +12,8 @@
 namespace lightswitch::detail {
 
 /// Reads a number as most files write it, from `at` on: digits with perhaps a minus, a point and an exponent. Returns
-/// where it ends, or null, when there is none or only `parse_number` can round it.
-///
-/// A whole number below 2^53, times or over a power of ten up to 10^22, is rounded once (Clinger, "How to read floating
-/// point numbers accurately", 1990).
+/// where it ends, or null, when there is none or only `parse_number` can round it: with more than 19 digits that count,
+/// or far from 1 (`nearest_double`).
 const char* read_simple_number(const char* at, const char* end, double& value);
 /// The same for an integer of at most 18 digits without a sign.
 const char* read_simple_integer(const char* at, const char* end, std::uint64_t& value);
@@ -55,9 +54,6 @@ inline const char* append_digits(const char* at, const char* end, std::uint64_t&
 }
 
 inline const char* read_simple_number(const char* at, const char* end, double& value) {
-    static constexpr std::array<double, 23> powers{1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
-                                                   1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
-                                                   1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
     if (FLT_EVAL_METHOD != 0) return nullptr;  // would round twice
     const bool negative = at < end && *at == '-';
     if (negative) ++at;
@@ -71,7 +67,11 @@ inline const char* read_simple_number(const char* at, const char* end, double& v
         exponent = point - at;
         count -= exponent;
     }
-    if (count == 0 || count > 19) return nullptr;
+    if (count == 0) return nullptr;
+    if (count > 19) {
+        for (const char* c = first; c < at && (*c == '0' || *c == '.'); ++c) count -= *c == '0';
+        if (count > 19) return nullptr;
+    }
     if (at < end && (*at == 'e' || *at == 'E')) {
         ++at;
         const bool small = at < end && *at == '-';
@@ -82,10 +82,9 @@ inline const char* read_simple_number(const char* at, const char* end, double& v
         if (at == begin || at - begin > 4) return nullptr;
         exponent += small ? -static_cast<std::ptrdiff_t>(power) : static_cast<std::ptrdiff_t>(power);
     }
-    if (digits > std::uint64_t(1) << 53 || exponent < -22 || exponent > 22) return nullptr;
-    const auto whole = static_cast<double>(static_cast<std::int64_t>(digits));
-    const double size = exponent < 0 ? whole / powers[static_cast<std::size_t>(-exponent)]
-                                     : whole * powers[static_cast<std::size_t>(exponent)];
+    if (exponent < -9999 || exponent > 9999) return nullptr;
+    const double size = nearest_double(digits, static_cast<int>(exponent));
+    if (!(size >= 0)) return nullptr;
     value = negative ? -size : size;
     return at;
 }
