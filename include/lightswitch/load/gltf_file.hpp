@@ -1,7 +1,7 @@
 #pragma once
 
-// glTF files as tinygltf reads them, after checks of what it takes on trust. The only file that includes tinygltf, whose
-// library is linked (LIGHTSWITCH_HAS_GLTF is 1): nothing of its implementation is compiled here.
+// glTF files as tinygltf reads them, after checks of what it takes on trust. The only file that includes tinygltf,
+// whose library is linked (LIGHTSWITCH_HAS_GLTF is 1): nothing of its implementation is compiled here.
 
 #if LIGHTSWITCH_HAS_GLTF
 
@@ -22,8 +22,8 @@
 
 namespace lightswitch::detail {
 
-/// A glTF 2.0 file: what tinygltf makes of its text, and the bytes of its buffers and images, which are fetched here, each
-/// once and when they are asked for. So nothing is read twice, and memory is in proportion to the files.
+/// A glTF 2.0 file: what tinygltf makes of its text, and the bytes of its buffers and images, which are fetched here,
+/// each once and when they are asked for. So nothing is read twice, and memory is in proportion to the files.
 class GltfFile {
 public:
     GltfFile(const std::filesystem::path& path, FileNotices& notices) : path_(path), notices_(notices) {

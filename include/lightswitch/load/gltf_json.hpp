@@ -169,6 +169,9 @@ private:
                 if (!indices->is_number_unsigned() || indices->get<std::uint64_t>() >= count)
                     fail(origin("meshes", i), "names accessors[" + shown(indices->dump()) + "], but there are " +
                                                   std::to_string(count) + " (counted from 0)");
+                const auto number = indices->get<std::size_t>();
+                if (!(*accessors)[number].contains("bufferView"))
+                    fail(origin("accessors", number), "has no bufferView, which indices need");
             }
     }
 

@@ -2,6 +2,8 @@
 
 // The two kinds of URI in glTF files.
 
+#include <lightswitch/load/text.hpp>
+
 #include <array>
 #include <charconv>
 #include <cstdint>

@@ -129,8 +129,8 @@ inline void check_tga(std::string_view bytes, const std::string& file) {
     reader.take(pair_at(12) * pair_at(14) * ((at(16) + 7) / 8));
 }
 
-/// What of an image file becomes a bitmap: its colours, or one channel. Of grey ones all three colours are the same, and
-/// where there is no alpha it is 1 everywhere.
+/// What of an image file becomes a bitmap: its colours, or one channel. Of grey ones all three colours are the same,
+/// and where there is no alpha it is 1 everywhere.
 enum class ImageChannels { color, red, green, blue, alpha };
 
 /// The texels of a file, of its colours without alpha unless another part is asked for. 16 bits become `Half` here,
