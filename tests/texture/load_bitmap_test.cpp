@@ -90,6 +90,32 @@ TEST_CASE("PNG of 16 bits is kept as 16-bit floats, decoded once, as in Mitsuba"
     CHECK(grey.texel(3, 0).z == relative(0.052947998046875, 1e-3));
 }
 
+TEST_CASE("one channel of a file, whichever it has") {
+    const auto channel = [](int depth, int kind, detail::ImageChannels part) {
+        return detail::decode_stb(sample_png(depth, kind), "a", TexelEncoding::linear, {}, part);
+    };
+    using enum detail::ImageChannels;
+    for (const int depth : {8, 16})
+        for (const int kind : {0, 2, 4, 6})
+            for (const auto part : {red, green, blue, alpha}) {
+                const Bitmap bitmap = channel(depth, kind, part);
+                REQUIRE(bitmap.channels() == 1);
+                const auto value = [&](int x, int y) {
+                    if (part == alpha) return (kind & 4) == 0 ? 255 : x + y == 0 ? 0 : 100;
+                    const auto index = (kind & 2) == 0 ? std::size_t{0} : static_cast<std::size_t>(part) - 1;
+                    return sample_rgb(x, y)[index];
+                };
+                for (int y = 0; y < 3; ++y)
+                    for (int x = 0; x < 4; ++x) {
+                        const int expected = value(x, y);
+                        const bool missing = part == alpha && (kind & 4) == 0;
+                        const double stored =
+                            depth == 8 || missing ? expected / 255.0 : (256.0 * expected + 77) / 65535;
+                        CHECK(std::abs(double(bitmap.texel(x, y).x) - stored) < 3e-4);
+                    }
+            }
+}
+
 TEST_CASE("a JPEG is read as in Mitsuba, but for the rounding of its decoder") {
     const Bitmap bitmap = loaded(sample_jpeg(), {.raw = true});
     CHECK(bitmap.bytes() == 20 * 12 * 3);

@@ -51,6 +51,22 @@ TEST_CASE("to_uv is the matrix applied to (u, v, 1), as in Mitsuba") {
     CHECK(board({0.3f, 0.1f}) == Rgb(0));
 }
 
+TEST_CASE("a factor multiplies what a texture returns, its mean, range and slope") {
+    const auto bitmap = std::make_shared<const Bitmap>(2, 1, std::vector<float>{0.1f, 0.2f, 0.3f, 0.5f, 0.8f, 0.1f},
+                                                       TexelEncoding::linear);
+    const Texture plain(bitmap), half = plain.scaled(Rgb(0.5f, 1, -2)), quarter = half.scaled(Rgb(0.5f));
+    for (const Vec2 uv : {Vec2(0.25f, 0.5f), Vec2(0.4f, 0), Vec2(3, -2)}) {
+        CHECK(half(uv) == plain(uv) * Rgb(0.5f, 1, -2));
+        CHECK(quarter(uv) == plain(uv) * Rgb(0.25f, 0.5f, -1));
+    }
+    CHECK(half.mean().z == relative(-0.4, 1e-6));
+    CHECK(half.least() == Rgb(0.05f, 0.2f, -0.6f));
+    CHECK(half.most() == Rgb(0.25f, 0.8f, -0.2f));
+    // Between the centres of the texels, half of the unit square.
+    CHECK(quarter.gradient({0.5f, 0.5f}).x == relative(2 * (0.2126 * 0.1 + 0.7152 * 0.3 + 0.0722 * 0.2), 1e-5));
+    CHECK(plain.scaled(Rgb(1, infinity, 1)).problem() == "the texture's factor is not finite");
+}
+
 TEST_CASE("a texture tells its mean, its range and what is wrong with it") {
     const Texture board(Checkerboard{Rgb(0.1f, 0.9f, 0.5f), Rgb(0.3f, 0.1f, 2)});
     CHECK(board.problem().empty());

@@ -65,7 +65,8 @@ private:
             return {Kind::blend, {indices_[blend->first], indices_[blend->second]}, blend->weight};
         if (const auto* mask = std::get_if<Mask>(&layer)) return {Kind::mask, {indices_[mask->inner]}, mask->opacity};
         if (const auto* map = std::get_if<NormalMap>(&layer))
-            return {Kind::normal_map, {indices_[map->inner]}, map->normals, 1, map->flips, map->shadows};
+            return {Kind::normal_map, {indices_[map->inner]}, map->normals,  map->scale,
+                    map->flips,       map->shadows,           map->against_v};
         if (const auto* bump = std::get_if<BumpMap>(&layer))
             return {Kind::bump_map, {indices_[bump->inner]},
                     bump->height,   static_cast<float>(data_.space.length(double(bump->scale))),

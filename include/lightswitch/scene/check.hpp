@@ -127,7 +127,10 @@ inline std::string layer_problem(const MaterialLayer& layer) {
     };
     if (const auto* blend = std::get_if<Blend>(&layer)) return fraction_problem("the weight", blend->weight);
     if (const auto* mask = std::get_if<Mask>(&layer)) return fraction_problem("the opacity", mask->opacity);
-    if (const auto* map = std::get_if<NormalMap>(&layer)) return map->normals.problem();
+    if (const auto* map = std::get_if<NormalMap>(&layer)) {
+        if (!is_finite(map->scale)) return "the scale of the normal map is not a finite number";
+        return map->normals.problem();
+    }
     if (const auto* bump = std::get_if<BumpMap>(&layer)) {
         if (!is_finite(bump->scale)) return "the scale of the bump map is not a finite number";
         return bump->height.problem();

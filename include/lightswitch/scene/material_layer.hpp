@@ -40,6 +40,10 @@ struct NormalMap {
     std::size_t inner;
     Texture normals;
     bool flips = true, shadows = true;  ///< see `MappedNormal`
+    float scale = 1;                    ///< of the normal's first two parts
+    /// The right angle points to where v falls, as glTF has it, and not a quarter turn to the left of dp/du: the two
+    /// differ where the texture lies mirrored on the surface.
+    bool against_v = false;
 };
 
 /// `front` where the surface is seen from its front, and `back`, in a mirrored frame, where from behind.

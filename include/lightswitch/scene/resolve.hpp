@@ -88,9 +88,11 @@ inline Vec3 bumped_normal(const SurfacePoint& point, const Tangents& tangents, c
     return dot(unit, point.normal) < 0 ? -unit : unit;
 }
 
-/// The shading normal that a normal map gives as a colour.
-inline Vec3 mapped_normal(const SurfacePoint& point, const Tangents& tangents, const Rgb& color) {
-    const Vec3 local = 2.0f * color - Vec3(1);
+/// The shading normal that a normal map gives at `uv`.
+inline Vec3 mapped_normal(const SurfacePoint& point, const Tangents& tangents, const LayerRecord& map, const Vec2& uv) {
+    const Vec3 stored = 2.0f * map.texture(uv) - Vec3(1);
+    const bool mirrored = map.against_v && dot(cross(tangents.u, tangents.v), point.shading_normal) > 0;
+    const Vec3 local(map.scale * stored.x, (mirrored ? -map.scale : map.scale) * stored.y, stored.z);
     const float squared = length_squared(local);
     if (!(squared > 0)) return point.shading_normal;
     return Basis(point.shading_normal, tangents.u).to_world(local * (1 / std::sqrt(squared)));
@@ -128,7 +130,7 @@ bool resolve_layers(const auto& data, const Vec2& uv, SurfacePoint& point, Mappe
                 next = layer.inner[0];
                 break;
             case LayerRecord::Kind::normal_map:
-                take(layer, mapped_normal(point, tangents(), layer.texture(uv)));
+                take(layer, mapped_normal(point, tangents(), layer, uv));
                 next = layer.inner[0];
                 break;
             case LayerRecord::Kind::both_sides:

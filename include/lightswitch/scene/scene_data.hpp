@@ -59,8 +59,8 @@ struct LayerRecord {
     Kind kind;
     std::array<MaterialIndex, 2> inner;
     Texture texture{Rgb(0)};
-    float scale = 1;  ///< of a bump map, in render space
-    bool flips = false, shadows = false;
+    float scale = 1;  ///< of a bump map in render space, of a normal map across the normal
+    bool flips = false, shadows = false, against_v = false;
 };
 
 /// The point that rays find in a scene of such materials.

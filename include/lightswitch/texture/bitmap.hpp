@@ -108,11 +108,12 @@ public:
         });
     }
 
-    /// How fast the luminance grows with u and v, of the bilinear blend, whatever the filter.
-    Vec2 gradient(const Vec2& uv) const {
+    /// How fast the luminance grows with u and v, of the bilinear blend, whatever the filter, when the texels are
+    /// multiplied by `factor`.
+    Vec2 gradient(const Vec2& uv, const Rgb& factor = Rgb(1)) const {
         return with_texels([&](const auto* texels) {
             const Pair x = around(uv.x, width_), y = around(uv.y, height_);
-            const auto value = [&](int column, int row) { return luminance(fetch(texels, column, row)); };
+            const auto value = [&](int column, int row) { return luminance(factor * fetch(texels, column, row)); };
             const float a = value(x.first, y.first), b = value(x.second, y.first), c = value(x.first, y.second),
                         d = value(x.second, y.second);
             const float along_u = (b - a) + y.weight * ((d - c) - (b - a));

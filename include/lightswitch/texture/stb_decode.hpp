@@ -13,9 +13,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 namespace lightswitch::detail {
@@ -127,12 +129,17 @@ inline void check_tga(std::string_view bytes, const std::string& file) {
     reader.take(pair_at(12) * pair_at(14) * ((at(16) + 7) / 8));
 }
 
-/// The texels of a file, without alpha. 16 bits become `Half` here, decoded unless they are linear.
+/// What of an image file becomes a bitmap: its colours, or one channel. Of grey ones all three colours are the same,
+/// and where there is no alpha it is 1 everywhere.
+enum class ImageChannels { color, red, green, blue, alpha };
+
+/// The texels of a file, of its colours without alpha unless another part is asked for. 16 bits become `Half` here,
+/// decoded unless they are linear.
 ///
 /// Takes memory in proportion to the file: a size that so few bytes cannot fill is refused before any is taken, and no
 /// block exceeds 16 bytes per texel by much.
-inline Bitmap decode_stb(std::string_view bytes, const std::string& file, TexelEncoding encoding,
-                         TextureLookup lookup) {
+inline Bitmap decode_stb(std::string_view bytes, const std::string& file, TexelEncoding encoding, TextureLookup lookup,
+                         ImageChannels part = ImageChannels::color) {
     const Origin where = file_origin(file);
     const stb_read::stbi_io_callbacks callbacks = StbSource::callbacks();
     const auto refuse = [&](const StbSource& source) {
@@ -159,13 +166,19 @@ inline Bitmap decode_stb(std::string_view bytes, const std::string& file, TexelE
     stb_largest_block =
         16 * (static_cast<std::size_t>(width) + 64) * (static_cast<std::size_t>(height) + 64) + (1 << 16);
 
-    const auto colors = static_cast<std::size_t>(channels < 3 ? 1 : 3);
     const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-    const auto without_alpha = [&](const auto* values, const auto& convert) {
-        std::vector<decltype(convert(*values))> result(count * colors);
+    // Called after decoding, which may find alpha that the header did not tell of.
+    const auto taken_from = [&](const auto* values, const auto& convert) {
+        using Value = std::remove_cvref_t<decltype(*values)>;
+        const auto stored = static_cast<std::size_t>(channels), colors = std::size_t{stored < 3 ? 1u : 3u};
+        std::size_t first = 0, taken = 1;
+        if (part == ImageChannels::color) taken = colors;
+        else if (part == ImageChannels::alpha) first = colors;
+        else if (colors == 3) first = static_cast<std::size_t>(part) - static_cast<std::size_t>(ImageChannels::red);
+        if (first == stored) return std::vector(count, convert(std::numeric_limits<Value>::max()));  // opaque
+        std::vector<decltype(convert(*values))> result(count * taken);
         for (std::size_t i = 0; i < count; ++i)
-            for (std::size_t c = 0; c < colors; ++c)
-                result[i * colors + c] = convert(values[i * static_cast<std::size_t>(channels) + c]);
+            for (std::size_t c = 0; c < taken; ++c) result[i * taken + c] = convert(values[i * stored + first + c]);
         return result;
     };
     StbSource test{bytes}, source{bytes};
@@ -179,14 +192,13 @@ inline Bitmap decode_stb(std::string_view bytes, const std::string& file, TexelE
             const float value = static_cast<float>(i) / 65535;
             table[i] = Half(encoding == TexelEncoding::srgb ? srgb_decode(value) : value);
         }
-        return Bitmap(width, height, without_alpha(values.get(), [&](std::uint16_t value) { return table[value]; }),
+        return Bitmap(width, height, taken_from(values.get(), [&](std::uint16_t value) { return table[value]; }),
                       TexelEncoding::linear, lookup);
     }
     const std::unique_ptr<stb_read::stbi_uc, decltype(&std::free)> values(
         stb_read::lightswitch_stbi_load_from_callbacks(&callbacks, &source, &width, &height, &channels, 0), &std::free);
     if (!values || source.exhausted) refuse(source);
-    return Bitmap(width, height, without_alpha(values.get(), [](std::uint8_t value) { return value; }), encoding,
-                  lookup);
+    return Bitmap(width, height, taken_from(values.get(), [](std::uint8_t value) { return value; }), encoding, lookup);
 }
 
 }  // namespace lightswitch::detail

@@ -37,37 +37,41 @@ public:
     explicit Texture(Bitmap bitmap, const UvTransform& to_uv = {})
         : Texture(std::make_shared<const Bitmap>(std::move(bitmap)), to_uv) {}
 
+    /// The same with all values multiplied by `factor`, of any sign; the bitmap stays shared.
+    Texture scaled(const Rgb& factor) const {
+        Texture result = *this;
+        result.factor_ *= factor;
+        return result;
+    }
+
     /// Linear RGB at the surface's `uv`.
     Rgb operator()(const Vec2& uv) const {
         const Vec2 position = to_uv_(uv);
-        return on_pattern([&](const auto& pattern) { return pattern.at(position); });
+        return factor_ * on_pattern([&](const auto& pattern) { return pattern.at(position); });
     }
 
     /// How fast the luminance grows with the surface's u and v. 0 everywhere on a checkerboard.
     Vec2 gradient(const Vec2& uv) const {
         const auto* bitmap = std::get_if<SharedBitmap>(&pattern_);
         if (!bitmap) return Vec2(0);
-        const Vec2 slope = (*bitmap)->gradient(to_uv_(uv));
+        const Vec2 slope = (*bitmap)->gradient(to_uv_(uv), factor_);
         return {slope.x * to_uv_.u.x + slope.y * to_uv_.v.x, slope.x * to_uv_.u.y + slope.y * to_uv_.v.y};
     }
 
     /// Mean over the pattern's own unit square, which is the mean over the surface when `to_uv` maps it onto whole
     /// copies of that.
     Rgb mean() const {
-        return on_pattern([](const auto& pattern) { return pattern.mean(); });
+        return factor_ * on_pattern([](const auto& pattern) { return pattern.mean(); });
     }
 
     /// Bounds of what look-ups return, channel by channel; rounding in a bilinear blend may leave them by an ulp.
-    Rgb least() const {
-        return on_pattern([](const auto& pattern) { return pattern.least(); });
-    }
-    Rgb most() const {
-        return on_pattern([](const auto& pattern) { return pattern.most(); });
-    }
+    Rgb least() const { return glm::min(factor_ * unscaled_least(), factor_ * unscaled_most()); }
+    Rgb most() const { return glm::max(factor_ * unscaled_least(), factor_ * unscaled_most()); }
 
     /// Why the texture is impossible (values or a `to_uv` that are not finite), or an empty string.
     std::string problem() const {
         if (!is_finite(to_uv_.u) || !is_finite(to_uv_.v)) return "the texture's to_uv has a value that is not finite";
+        if (!is_finite(factor_)) return "the texture's factor is not finite";
         if (const auto* bitmap = std::get_if<SharedBitmap>(&pattern_)) return (*bitmap)->problem();
         const Checkerboard& pattern = *std::get_if<Checkerboard>(&pattern_);
         if (!is_finite(pattern.color0) || !is_finite(pattern.color1))
@@ -78,6 +82,13 @@ public:
 private:
     using SharedBitmap = std::shared_ptr<const Bitmap>;
 
+    Rgb unscaled_least() const {
+        return on_pattern([](const auto& pattern) { return pattern.least(); });
+    }
+    Rgb unscaled_most() const {
+        return on_pattern([](const auto& pattern) { return pattern.most(); });
+    }
+
     // Not std::visit, which may call through a table of functions.
     template <class F>
     Rgb on_pattern(const F& f) const {
@@ -87,6 +98,7 @@ private:
 
     std::variant<Checkerboard, SharedBitmap> pattern_;
     UvTransform to_uv_;
+    Rgb factor_{1};
 };
 
 }  // namespace lightswitch
