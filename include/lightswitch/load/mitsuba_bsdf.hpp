@@ -101,6 +101,9 @@ public:
 
     LibraryBsdf read() {
         const std::string type = element_.type();
+        // Exporters gave Mitsuba 0.6 these also where there is no roughness, and it passes over what it does not know.
+        if (element_.is_old() && (type == "conductor" || type == "dielectric" || type == "thindielectric"))
+            element_.accept({"distribution", "alpha", "alpha_u", "alpha_v"});
         if (type == "diffuse") return finished(Lambert{});
         if (type == "conductor") return metal(Conductor{});
         if (type == "roughconductor") return metal(rough(RoughConductor{}));
@@ -120,7 +123,7 @@ public:
             model.use_fast_approx = element_.boolean("use_fast_approx", false);
             return finished(model);
         }
-        if (type == "phong") return finished(ModifiedPhong{});
+        if (type == "phong") return within_one(ModifiedPhong{});
         if (type == "ward") return ward();
         element_.unknown_type(
             "diffuse, conductor, roughconductor, dielectric, roughdielectric, thindielectric, plastic, roughplastic, "
@@ -142,6 +145,26 @@ private:
         if (!problem.empty()) element_.error(problem);
         return result;
     }
+    /// What Mitsuba 0.6 darkens so that no more light leaves than comes.
+    template <class B>
+    LibraryBsdf within_one(B model) {
+        read_parameters(element_, model);
+        const auto diffuse = element_.texture("diffuse_reflectance"), lobe = element_.texture("specular_reflectance");
+        const Rgb most_diffuse = diffuse ? textures_.read(*diffuse).most() : model.diffuse_reflectance;
+        const Rgb sum = most_diffuse + (lobe ? textures_.read(*lobe).most() : model.specular_reflectance);
+        const float largest = std::max({sum.x, sum.y, sum.z});
+        if (sum_problem(Rgb(0), sum).empty()) return with_textures(model);
+        if (!diffuse && !lobe) {
+            model.diffuse_reflectance *= 0.99f / largest;
+            model.specular_reflectance *= 0.99f / largest;
+            element_.log().notice(element_.origin(), "reflects more than all light, and is darkened as in Mitsuba 0.6");
+        } else if (!lobe) {
+            element_.problem("", "reflects more than all light", "its lobe is darkened");
+            model.specular_reflectance =
+                glm::clamp(Rgb(1) - most_diffuse, Rgb(0), model.specular_reflectance);
+        }
+        return with_textures(model);
+    }
     template <class B>
     LibraryBsdf metal(B model) {
         read_metal_name(element_, model);
@@ -153,6 +176,11 @@ private:
             model.eta /= around;
             if (!ideal) model.k /= around;
         }
+        for (int c = 0; c < 3; ++c)
+            if (model.eta[c] == 0 && model.k[c] == 0) {
+                element_.problem("", "eta and k are both 0 in one component", "it reflects everything there");
+                model.k[c] = 1;
+            }
         return with_textures(model);
     }
     template <class B>
@@ -204,7 +232,7 @@ private:
     LibraryBsdf ward() {
         static const std::map<std::string, WardVariant> variants{
             {"ward", WardVariant::ward}, {"ward-duer", WardVariant::ward_duer}, {"balanced", WardVariant::balanced}};
-        return finished(Ward{.variant = element_.one_of("variant", "balanced", variants)});
+        return within_one(Ward{.variant = element_.one_of("variant", "balanced", variants)});
     }
 
     /// Parameters that only say how Mitsuba draws its samples.

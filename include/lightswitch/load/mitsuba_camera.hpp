@@ -67,7 +67,7 @@ inline FilmDescription read_film(const XmlFile& file, pugi::xml_node node, std::
     if (const auto stops = element.number("exposure")) exposure = static_cast<float>(*stops);
     // How Mitsuba would store the image, and what lies beside it, says nothing about what is in it.
     element.accept({"pixel_format", "component_format", "file_format", "banner", "compensate", "high_quality_edges",
-                    "sample_border", "attach_log", "gamma", "tonemap_method", "key", "burn", "variable", "digits"});
+                    "sample_border", "attach_log", "gamma", "tonemap_method", "key", "burn", "variable", "digits", "channel_names"});
     for (const char* prefix : {"metadata", "label"}) element.accept_beginning(prefix);
     element.finish();
     check(film);

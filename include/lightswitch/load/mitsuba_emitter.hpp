@@ -52,7 +52,8 @@ private:
                                     .cutoff_angle = cutoff,
                                     .beam_width = element.number("beam_width", 0.75 * cutoff)});
         } else if (element.type() == "area") {
-            element.error("an area light must be inside a <shape>");
+            if (!node.attribute("id")) element.error("an area light must be inside a <shape>");
+            element.accept_rest();  // shapes refer to it
         } else {
             element.unknown_type("point, spot, directional, constant, envmap, and area inside a shape");
         }

@@ -66,7 +66,10 @@ public:
         return color(name, Rgb(otherwise), use);
     }
 
-    /// The `<texture>` inside that gives the parameter of that name, or the `<ref>` to one.
+    /// Whether it was written for Mitsuba 0.x.
+    bool is_old() const { return file_.is_old(node_); }
+
+    /// The `<texture>` inside that gives the parameter of that name, or the `<ref>` to one. May be asked for again.
     std::optional<pugi::xml_node> texture(const std::string& name);
 
     /// The objects inside with that tag, and those that references stand for, once each.
@@ -98,6 +101,7 @@ private:
     std::map<std::string, pugi::xml_node> parameters_;
     std::vector<pugi::xml_node> objects_;
     std::set<std::string> asked_;
+    std::set<pugi::xml_node> read_textures_;
 };
 
 inline XmlElement::XmlElement(const XmlFile& file, pugi::xml_node node) : file_(file), node_(node) {
@@ -124,8 +128,11 @@ inline void XmlElement::sort(pugi::xml_node child) {
     else if (tag == "transform") file_.check_attributes(child, {"name"});
     else fail(file_.origin(child), "elements of this kind are not supported here");
     if (tag != "transform" && !typed) file_.check_childless(child);
-    if (!parameters_.emplace(child.attribute("name").value(), child).second)
-        fail(file_.origin(child), "the parameter is given twice");
+    const auto [first, is_new] = parameters_.emplace(child.attribute("name").value(), child);
+    // With the same value again nothing is in doubt.
+    const bool same = !is_new && tag == first->second.name() && child.attribute("value") &&
+                      std::string_view(child.attribute("value").value()) == first->second.attribute("value").value();
+    if (!is_new && !same) fail(file_.origin(child), "the parameter is given twice");
 }
 
 inline pugi::xml_node XmlElement::find(const std::string& name, std::initializer_list<std::string_view> tags) {
@@ -238,7 +245,7 @@ inline std::optional<pugi::xml_node> XmlElement::texture(const std::string& name
     });
     if (found == objects_.end()) return {};
     const pugi::xml_node node = *found;
-    objects_.erase(found);
+    read_textures_.insert(node);
     if (parameters_.contains(name))
         log().problem(file_.origin(node), "the parameter is given twice", "the texture counts");
     return node;
@@ -247,6 +254,7 @@ inline std::optional<pugi::xml_node> XmlElement::texture(const std::string& name
 inline std::vector<pugi::xml_node> XmlElement::objects(std::string_view tag) {
     std::vector<pugi::xml_node> result;
     std::erase_if(objects_, [&](pugi::xml_node node) {
+        if (read_textures_.contains(node)) return false;
         const bool reference = std::string_view(node.name()) == "ref";
         const pugi::xml_node meant = reference ? file_.target(node) : node;
         if (!meant || meant.name() != tag) return false;
@@ -273,6 +281,7 @@ inline void XmlElement::finish() const {
                       "unknown parameter " + quote(name) + known, "it is ignored");
     }
     for (const pugi::xml_node node : objects_) {
+        if (read_textures_.contains(node)) continue;
         const bool reference = std::string_view(node.name()) == "ref";
         const pugi::xml_node meant = reference ? file_.target(node) : pugi::xml_node();
         const std::string what =
