@@ -55,6 +55,39 @@ TEST_CASE("all forms of OBJ corners are read") {
     CHECK(flat.normals.empty());
 }
 
+TEST_CASE("corners at a position with many texture coordinates and normals are told apart") {
+    std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 0 0 2\n";
+    constexpr std::uint32_t uvs = 200;
+    for (std::uint32_t i = 0; i < uvs; ++i) text += "vt " + std::to_string(i) + " 0\n";
+    // Each corner of the first vertex comes up three times.
+    for (int round = 0; round < 3; ++round)
+        for (std::uint32_t i = 1; i <= uvs; ++i)
+            for (const char* normal : {"/1", "/2"}) text += "f 1/" + std::to_string(i) + normal + " 2/1/1 3/1/1\n";
+    const Mesh mesh = parse(text);
+    REQUIRE(mesh.triangles.size() == 6 * uvs);
+    CHECK(mesh.positions.size() == 2 * uvs + 2);
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+        const std::uint32_t vertex = mesh.triangles[t][0];
+        REQUIRE(mesh.uvs[vertex].x == static_cast<float>(t / 2 % uvs));
+        REQUIRE(mesh.normals[vertex].z == 1 + t % 2);
+        REQUIRE(vertex == mesh.triangles[t % (2 * uvs)][0]);
+    }
+}
+
+TEST_CASE("OBJ files larger than a piece of what is read at a time keep their line numbers") {
+    // Lines of all kinds, among them continued ones, lie across the ends of pieces.
+    std::string text = std::string(corners);
+    int line = 4;
+    while (text.size() < 2000000) {
+        text += "f 1 2 3\nf 1 \\\n 2 4 # here\n# \\\nv 0.25 1e3 -7\n\n";
+        line += 6;
+    }
+    const Mesh mesh = parse(text);
+    CHECK(mesh.triangles.size() == static_cast<std::size_t>(line - 4) / 3);
+    CHECK(mesh.positions.size() == 4);
+    CHECK(contains(message_of([&] { parse(text + "f 1 2 x"); }), "mesh.obj:" + std::to_string(line + 1) + ": \"x\""));
+}
+
 TEST_CASE("the normals of an OBJ file decide the front") {
     const std::string text = std::string(corners) + "vn 0 0 -1\nf 1//1 2//1 3//1\n";
     CHECK(parse(text).triangles == std::vector<Triangle>{{0, 2, 1}});

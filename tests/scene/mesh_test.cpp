@@ -94,6 +94,21 @@ TEST_CASE("flipping exchanges front and back of winding and normals") {
     CHECK(back.flipped().triangles == mesh.triangles);
 }
 
+TEST_CASE("a mesh that is given away is changed in place, with the same result") {
+    Mesh mesh = rectangle();
+    mesh.smooth();
+    for (const double z : {2.0, -2.0}) {
+        const Mesh expected = mesh.transformed(scaling(1, 3, z)).flipped();
+        Mesh given = mesh;
+        const DVec3* const positions = given.positions.data();
+        const Mesh result = std::move(given).transformed(scaling(1, 3, z)).flipped();
+        CHECK(result.positions.data() == positions);
+        CHECK(result.positions == expected.positions);
+        CHECK(result.normals == expected.normals);
+        CHECK(result.triangles == expected.triangles);
+    }
+}
+
 TEST_CASE("smooth normals weigh triangles by their angle at the vertex") {
     // Two faces of a cube around the edge from a to b; the first is cut in two triangles at a, which must not change
     // a's normal: 45 + 45 degrees of +z and 90 degrees of +x.

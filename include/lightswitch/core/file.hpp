@@ -15,6 +15,13 @@
 #include <string_view>
 #include <system_error>
 
+#if defined(__unix__) || defined(__APPLE__)
+#include <sys/mman.h>
+#define LIGHTSWITCH_MAPS_FILES 1
+#else
+#define LIGHTSWITCH_MAPS_FILES 0
+#endif
+
 namespace lightswitch {
 
 namespace detail {
@@ -144,23 +151,70 @@ inline void check_file_writable(const std::filesystem::path& path) {
     detail::TemporaryFile{target};
 }
 
-/// The bytes of a regular file. Throws `Error` when there is none, it cannot be read, or it exceeds `max_bytes`.
-inline std::string read_file(const std::filesystem::path& path, std::uintmax_t max_bytes) {
-    const Origin where = detail::file_origin(path);
+namespace detail {
+
+/// Opens a regular file to read it. Throws `Error` when there is none, it cannot be read, or it exceeds `max_bytes`.
+inline FileHandle open_file(const std::filesystem::path& path, std::uintmax_t max_bytes, std::size_t& size) {
+    const Origin where = file_origin(path);
     std::error_code error;
     const auto status = std::filesystem::status(path, error);
     if (!std::filesystem::exists(status)) fail(where, "no such file");
     if (std::filesystem::is_directory(status)) fail(where, "is a directory, not a file");
     if (!std::filesystem::is_regular_file(status)) fail(where, "is not a regular file");
-    const std::uintmax_t size = std::filesystem::file_size(path, error);
+    const std::uintmax_t bytes = std::filesystem::file_size(path, error);
     if (error) fail(where, "cannot be read: " + error.message());
-    if (size > max_bytes)
-        fail(where, "has " + std::to_string(size) + " bytes; at most " + std::to_string(max_bytes) + " are read");
-    const detail::FileHandle file(std::fopen(path.string().c_str(), "rb"));
-    if (!file) fail(where, "cannot be read: " + detail::errno_text(errno));
-    std::string bytes(static_cast<std::size_t>(size), '\0');
-    if (std::fread(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) fail(where, "reading failed");
+    if (bytes > max_bytes)
+        fail(where, "has " + std::to_string(bytes) + " bytes; at most " + std::to_string(max_bytes) + " are read");
+    FileHandle file(std::fopen(path.string().c_str(), "rb"));
+    if (!file) fail(where, "cannot be read: " + errno_text(errno));
+    size = static_cast<std::size_t>(bytes);
+    return file;
+}
+
+}  // namespace detail
+
+/// The bytes of a regular file. Throws `Error` when there is none, it cannot be read, or it exceeds `max_bytes`.
+inline std::string read_file(const std::filesystem::path& path, std::uintmax_t max_bytes) {
+    std::size_t size = 0;
+    const detail::FileHandle file = detail::open_file(path, max_bytes, size);
+    std::string bytes(size, '\0');
+    if (std::fread(bytes.data(), 1, size, file.get()) != size) fail(detail::file_origin(path), "reading failed");
     return bytes;
 }
+
+/// The same without a copy of a large file, where the system can map it into memory. Nobody may shorten the file
+/// meanwhile: the system would end the program.
+class FileBytes {
+public:
+    FileBytes(const std::filesystem::path& path, std::uintmax_t max_bytes) {
+#if LIGHTSWITCH_MAPS_FILES
+        constexpr std::size_t large = std::size_t(1) << 20;
+        const detail::FileHandle file = detail::open_file(path, max_bytes, size_);
+        if (size_ >= large) mapped_ = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, ::fileno(file.get()), 0);
+        if (mapped_ != MAP_FAILED) return;
+#endif
+        read_ = read_file(path, max_bytes);
+    }
+    FileBytes(const FileBytes&) = delete;
+    FileBytes& operator=(const FileBytes&) = delete;
+#if LIGHTSWITCH_MAPS_FILES
+    ~FileBytes() {
+        if (mapped_ != MAP_FAILED) ::munmap(mapped_, size_);
+    }
+
+    std::string_view view() const {
+        return mapped_ != MAP_FAILED ? std::string_view(static_cast<const char*>(mapped_), size_) : read_;
+    }
+
+private:
+    void* mapped_ = MAP_FAILED;
+    std::size_t size_ = 0;
+#else
+    std::string_view view() const { return read_; }
+
+private:
+#endif
+    std::string read_;
+};
 
 }  // namespace lightswitch

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace lightswitch {
@@ -33,11 +34,12 @@ inline constexpr std::string_view guessed_normal =
 /// Gathers the notices of one file.
 class FileNotices {
 public:
-    void add(const Origin& where, std::string_view what) {
+    void add(const Origin& where, std::string_view what, std::size_t count = 1) {
+        if (count == 0) return;
         const auto same = [&](const Kind& kind) { return kind.what == what; };
         const auto found = std::find_if(kinds_.begin(), kinds_.end(), same);
-        if (found != kinds_.end()) ++found->count;
-        else kinds_.push_back({where, std::string(what), 1});
+        if (found != kinds_.end()) found->count += count;
+        else kinds_.push_back({where, std::string(what), count});
     }
 
     /// Appends them to `notices`, unless it is null.
@@ -64,10 +66,10 @@ inline void finish_normals(Mesh& mesh) {
     mesh.face_along_normals();
     const auto is_missing = [](const DVec3& normal) { return normal == DVec3(0); };
     if (std::none_of(mesh.normals.begin(), mesh.normals.end(), is_missing)) return;
-    Mesh computed{.positions = mesh.positions, .normals = {}, .triangles = mesh.triangles};
-    computed.smooth();
-    for (std::size_t i = 0; i < mesh.normals.size(); ++i)
-        if (is_missing(mesh.normals[i])) mesh.normals[i] = computed.normals[i];
+    const std::vector<DVec3> given = std::move(mesh.normals);
+    mesh.smooth();
+    for (std::size_t i = 0; i < given.size(); ++i)
+        if (!is_missing(given[i])) mesh.normals[i] = given[i];
 }
 
 }  // namespace detail

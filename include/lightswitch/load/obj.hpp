@@ -2,13 +2,15 @@
 
 // Wavefront OBJ: triangles and polygons with optional vertex normals.
 
-#include <lightswitch/core/file.hpp>
 #include <lightswitch/load/mesh_file.hpp>
+#include <lightswitch/load/number.hpp>
+#include <lightswitch/load/obj_vertices.hpp>
 #include <lightswitch/load/polygon.hpp>
 #include <lightswitch/load/text.hpp>
+#include <lightswitch/load/text_file.hpp>
 
 #include <filesystem>
-#include <unordered_map>
+#include <map>
 
 namespace lightswitch {
 
@@ -30,46 +32,121 @@ Mesh load_obj(const std::filesystem::path& path, FileNormals normals = FileNorma
 
 namespace detail {
 
+/// What an OBJ file holds.
+struct ObjContents {
+    /// A name that the file gives to surfaces or to a file of materials, and the line where it does so first.
+    struct Name {
+        std::string text;
+        int line;
+    };
+    /// From `first_triangle` on the surface is `materials[material]`.
+    struct Use {
+        std::size_t first_triangle, material;
+    };
+    Mesh mesh;
+    std::vector<Name> materials, libraries;
+    std::vector<Use> uses;
+};
+
 class ObjReader {
 public:
-    ObjReader(const std::filesystem::path& path, FileNormals use) : origin_{path.string(), 0, {}}, use_(use) {}
+    /// Materials are passed over unless they are wanted.
+    ObjReader(const std::filesystem::path& path, FileNormals use, bool with_materials = false)
+        : path_(path), origin_{path.string(), 0, {}}, use_(use), with_materials_(with_materials) {}
 
-    Mesh read(std::string_view text, Notices* notices) {
-        text = without_byte_order_mark(text);
-        while (!text.empty()) statement(next_statement(text));
-        origin_.line = 0;
-        if (mesh_.triangles.empty()) fail(origin_, "contains no faces");
-        if (!mesh_.normals.empty()) mesh_.normals.resize(mesh_.positions.size(), DVec3(0));
-        if (!mesh_.uvs.empty()) mesh_.uvs.resize(mesh_.positions.size(), Vec2(0));
-        for (std::size_t v = 0; v < mesh_.normals.size(); ++v)
-            if (mesh_.normals[v] == DVec3(0)) {
-                origin_.line = lines_[v];
-                notices_.add(origin_, guessed_normal);
+    ObjContents read(Notices* notices) {
+        TextFile file(path_, max_mesh_bytes);
+        std::string_view text = without_byte_order_mark(file.next());
+        for (; !text.empty(); text = file.next()) {
+            end_ = text.data() + text.size();
+            while (!text.empty()) {
+                origin_.line += skipped_lines_ + 1;
+                skipped_lines_ = 0;
+                if (const char* const end = usual_statement(text.data()))
+                    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+                else statement(next_statement(text));
             }
-        finish_normals(mesh_);
+        }
+        origin_.line = 0;
+        if (contents_.mesh.triangles.empty()) fail(origin_, "contains no faces");
+        finish_vertices();
+        finish_normals(contents_.mesh);
         notices_.report(notices);
-        return std::move(mesh_);
+        return std::move(contents_);
     }
 
 private:
-    /// Index from 0 into the lists of positions, texture coordinates and normals; -1 for none.
-    using Corner = std::array<std::int64_t, 3>;
-    struct CornerHash {
-        std::size_t operator()(const Corner& corner) const {
-            std::uint64_t hash = 0;
-            for (const std::int64_t index : corner) {
-                hash = (hash ^ static_cast<std::uint64_t>(index)) * 0x9e3779b97f4a7c15u;
-                hash ^= hash >> 29;
-            }
-            return static_cast<std::size_t>(hash);
+    // --- statements as nearly all are written: read fast, and otherwise left alone
+
+    /// Where the line at `text` ends if it is a `v`, `vn`, `vt` or `f` without anything special, which it then takes in;
+    /// otherwise null, and `statement` has the word.
+    const char* usual_statement(const char* text) {
+        if (text[0] == 'f') return is_blank(text[1]) ? usual_face(text + 2) : nullptr;
+        if (text[0] != 'v') return nullptr;
+        DVec3 numbers;
+        const char* end = nullptr;
+        if (is_blank(text[1])) {
+            if ((end = usual_vector(text + 2, 3, 7, numbers))) positions_.push_back(numbers);
+        } else if (text[1] == 'n' && is_blank(text[2])) {
+            if ((end = usual_vector(text + 3, 3, 3, numbers))) normals_.push_back(numbers);
+        } else if (text[1] == 't' && is_blank(text[2])) {
+            if ((end = usual_vector(text + 3, 1, 3, numbers))) texture_coordinates_.emplace_back(numbers.x, numbers.y);
         }
-    };
+        return end;
+    }
+
+    static const char* after_line_end(const char* text) { return text + (text[0] == '\r' && text[1] == '\n' ? 2 : 1); }
+
+    const char* usual_vector(const char* text, int fewest, int most, DVec3& result) const {
+        std::array<double, 7> numbers{};
+        for (int count = 0;; ++count) {
+            while (is_blank(*text)) ++text;
+            if (is_line_end(*text)) {
+                if (count < fewest) return nullptr;
+                result = {numbers[0], numbers[1], numbers[2]};
+                return after_line_end(text);
+            }
+            if (count == most) return nullptr;
+            text = read_simple_number(text, end_, numbers[static_cast<std::size_t>(count)]);
+            if (text == nullptr || !(is_blank(*text) || is_line_end(*text))) return nullptr;
+        }
+    }
+
+    const char* usual_face(const char* text) {
+        corners_.clear();
+        while (true) {
+            while (is_blank(*text)) ++text;
+            if (is_line_end(*text)) break;
+            ObjCorner corner;
+            text = usual_index(text, positions_.size(), corner.position);
+            if (text != nullptr && *text == '/' && *++text != '/')
+                text = usual_index(text, texture_coordinates_.size(), corner.uv);
+            if (text != nullptr && *text == '/') text = usual_index(text + 1, normals_.size(), corner.normal);
+            if (text == nullptr || !(is_blank(*text) || is_line_end(*text))) return nullptr;
+            corners_.push_back(vertex(corner));
+        }
+        if (corners_.size() < 3) return nullptr;
+        add_polygon();
+        return after_line_end(text);
+    }
+
+    static const char* usual_index(const char* text, std::size_t size, std::uint32_t& result) {
+        const bool backwards = *text == '-';
+        if (backwards) ++text;
+        std::size_t number = 0;
+        const char* const begin = text;
+        for (; *text >= '0' && *text <= '9' && text - begin < 10; ++text)
+            number = 10 * number + static_cast<std::size_t>(*text - '0');
+        if (number == 0 || number > size) return nullptr;
+        result = static_cast<std::uint32_t>(backwards ? size - number : number - 1);
+        return text;
+    }
+
+    // --- statements of all kinds
 
     /// Cuts one line off `text`, without its comment, together with the lines that it continues on.
     std::string_view next_statement(std::string_view& text) {
         joined_.clear();
-        origin_.line += skipped_lines_ + 1;
-        skipped_lines_ = 0;
         while (true) {
             std::string_view line = next_line(text);
             line = line.substr(0, line.find('#'));
@@ -95,6 +172,10 @@ private:
             texture_coordinates_.emplace_back(uv.x, uv.y);
         } else if (keyword == "f" || keyword == "fo") {  // the same in old files
             face(line);
+        } else if (with_materials_ && keyword == "usemtl") {
+            use_material(line);
+        } else if (with_materials_ && keyword == "mtllib") {
+            contents_.libraries.push_back({std::string(trimmed(line)), origin_.line});
         } else if (std::find(skipped.begin(), skipped.end(), keyword) != skipped.end()) {
             notices_.add(origin_, "the statement " + quote(keyword) + " is skipped");
         } else if (std::find(meaningless.begin(), meaningless.end(), keyword) == meaningless.end()) {
@@ -123,55 +204,78 @@ private:
             corners_.push_back(corner(word));
         if (corners_.size() < 3)
             fail(origin_, "a face needs at least 3 corners, not " + std::to_string(corners_.size()));
-        if (!cutter_.cut(corners_, mesh_)) notices_.add(origin_, crossing_polygon);
+        add_polygon();
+    }
+
+    void add_polygon() {
+        if (!cutter_.cut(corners_, contents_.mesh)) notices_.add(origin_, crossing_polygon);
     }
 
     std::uint32_t corner(std::string_view word) {
         static constexpr std::array<const char*, 3> names{"vertex", "texture coordinate", "normal"};
         const std::array<std::size_t, 3> sizes{positions_.size(), texture_coordinates_.size(), normals_.size()};
-        Corner key{-1, -1, -1};
+        ObjCorner key;
+        std::uint32_t* const parts[] = {&key.position, &key.uv, &key.normal};
         std::string_view rest = word;
         for (std::size_t i = 0;; ++i) {
             const std::size_t slash = rest.find('/');
             const std::string_view part = rest.substr(0, slash);
             if (i == 3 || (i == 0 && part.empty()))
                 fail(origin_, quote(word) + " is not a corner (v, v/vt, v//vn or v/vt/vn)");
-            if (!part.empty()) key[i] = index(part, sizes[i], names[i]);
+            if (!part.empty()) *parts[i] = index(part, sizes[i], names[i]);
             if (slash == std::string_view::npos) break;
             rest.remove_prefix(slash + 1);
         }
-        if (use_ == FileNormals::ignore) key[2] = -1;
         return vertex(key);
     }
 
-    std::int64_t index(std::string_view word, std::size_t size, const char* what) {
+    std::uint32_t index(std::string_view word, std::size_t size, const char* what) {
         const auto number = parse_integer(word);
         if (!number) fail(origin_, quote(word) + " is not an index");
         const auto count = static_cast<std::int64_t>(size);
         if (*number == 0 || *number > count || *number < -count)
             fail(origin_, std::string(what) + " " + std::to_string(*number) + " does not exist: " +
                               std::to_string(count) + (count == 1 ? " is" : " are") + " defined above");
-        return *number > 0 ? *number - 1 : count + *number;
+        return static_cast<std::uint32_t>(*number > 0 ? *number - 1 : count + *number);
     }
 
-    std::uint32_t vertex(const Corner& key) {
-        const auto [entry, is_new] = vertices_.try_emplace(key, static_cast<std::uint32_t>(mesh_.positions.size()));
-        if (!is_new) return entry->second;
-
-        if (key[2] >= 0) {
-            mesh_.normals.resize(mesh_.positions.size(), DVec3(0));
-            mesh_.normals.push_back(normals_[static_cast<std::size_t>(key[2])]);
-        }
-        if (key[1] >= 0) {
-            mesh_.uvs.resize(mesh_.positions.size(), Vec2(0));
-            mesh_.uvs.push_back(texture_coordinates_[static_cast<std::size_t>(key[1])]);
-        }
-        mesh_.positions.push_back(positions_[static_cast<std::size_t>(key[0])]);
-        lines_.push_back(origin_.line);
-        return entry->second;
+    void use_material(std::string_view line) {
+        const auto [entry, is_new] =
+            material_numbers_.try_emplace(std::string(trimmed(line)), material_numbers_.size());
+        if (is_new) contents_.materials.push_back({entry->first, origin_.line});
+        const ObjContents::Use use{contents_.mesh.triangles.size(), entry->second};
+        auto& uses = contents_.uses;
+        if (!uses.empty() && uses.back().first_triangle == use.first_triangle) uses.back() = use;
+        else if (uses.empty() || uses.back().material != use.material) uses.push_back(use);
     }
 
-    /// In nearly every file, and without meaning here.
+    /// The number of the mesh's vertex for a corner, which is made when it comes up first.
+    std::uint32_t vertex(ObjCorner corner) {
+        if (use_ == FileNormals::ignore) corner.normal = ObjCorner::none;
+        const auto [number, is_new] = vertices_.number(corner, positions_.size());
+        if (is_new) {
+            const bool has_normal = corner.normal != ObjCorner::none && normals_[corner.normal] != DVec3(0);
+            if (!has_normal && line_without_normal_ == 0) line_without_normal_ = origin_.line;
+            contents_.mesh.positions.push_back(positions_[corner.position]);
+        }
+        return number;
+    }
+
+    /// Gives the vertices their normals and texture coordinates, and gives back memory as soon as it can.
+    void finish_vertices() {
+        Mesh& mesh = contents_.mesh;
+        positions_ = {};
+        vertices_.finish_numbers();
+        vertices_.gather(texture_coordinates_, &ObjVertices::Vertex::uv, mesh.uvs);
+        texture_coordinates_ = {};
+        vertices_.gather(normals_, &ObjVertices::Vertex::normal, mesh.normals);
+        normals_ = {};
+        vertices_ = {};
+        const auto missing = std::count(mesh.normals.begin(), mesh.normals.end(), DVec3(0));
+        notices_.add({origin_.file, line_without_normal_, {}}, guessed_normal, static_cast<std::size_t>(missing));
+    }
+
+    /// In nearly every file, and without meaning for a mesh.
     static constexpr std::array<std::string_view, 5> meaningless{"o", "g", "s", "usemtl", "mtllib"};
     static constexpr auto skipped = std::to_array<std::string_view>(
         {"p",     "l",        "vp",       "cstype", "deg",  "bmat", "step",       "curv",     "curv2",
@@ -179,25 +283,28 @@ private:
          "bevel", "lod",      "usemap",   "maplib", "call", "csh",  "ctech",      "stech",    "bsp",
          "bzp",   "c_interp", "d_interp", "cdc",    "cdp",  "res",  "shadow_obj", "trace_obj"});
 
+    std::filesystem::path path_;
     Origin origin_;
     FileNormals use_;
+    bool with_materials_;
+    const char* end_ = nullptr;  ///< of the piece that is being read
     std::string joined_;
     int skipped_lines_ = 0;
     std::vector<DVec3> positions_, normals_;
     std::vector<Vec2> texture_coordinates_;
-    std::unordered_map<Corner, std::uint32_t, CornerHash> vertices_;
+    ObjVertices vertices_;
+    int line_without_normal_ = 0;
     std::vector<std::uint32_t> corners_;
+    std::map<std::string, std::size_t, std::less<>> material_numbers_;
     PolygonCutter cutter_;
-    Mesh mesh_;
-    std::vector<int> lines_;  ///< where each of the mesh's positions is first used
+    ObjContents contents_;
     FileNotices notices_;
 };
 
 }  // namespace detail
 
 inline Mesh load_obj(const std::filesystem::path& path, FileNormals normals, Notices* notices) {
-    const std::string text = read_file(path, detail::max_mesh_bytes);
-    return detail::ObjReader(path, normals).read(text, notices);
+    return detail::ObjReader(path, normals).read(notices).mesh;
 }
 
 }  // namespace lightswitch

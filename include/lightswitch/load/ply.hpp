@@ -4,6 +4,7 @@
 
 #include <lightswitch/core/file.hpp>
 #include <lightswitch/load/mesh_file.hpp>
+#include <lightswitch/load/ply_bulk.hpp>
 #include <lightswitch/load/ply_data.hpp>
 #include <lightswitch/load/polygon.hpp>
 
@@ -71,16 +72,15 @@ private:
         static constexpr std::array<const char*, 6> names{"x", "y", "z", "nx", "ny", "nz"};
         static constexpr std::array<std::array<const char*, 2>, 3> uv_names{
             {{"u", "v"}, {"s", "t"}, {"texture_u", "texture_v"}}};
-        constexpr std::size_t u = names.size(), v = u + 1, without = v + 1;
-        std::vector<std::size_t> roles(element.properties.size(), without);
-        const bool with_normals =
-            use_ == FileNormals::use && element.find("nx") && element.find("ny") && element.find("nz");
-        for (std::size_t i = 0; i < (with_normals ? 6 : 3); ++i) {
+        PlyVertexRoles roles;
+        roles.of.assign(element.properties.size(), PlyVertexRoles::none);
+        roles.with_normals = use_ == FileNormals::use && element.find("nx") && element.find("ny") && element.find("nz");
+        for (std::size_t i = 0; i < (roles.with_normals ? 6 : 3); ++i) {
             const auto place = element.find(names[i]);
             if (!place) fail({origin_.file, element.line, {}}, std::string("the vertices have no ") + names[i]);
             if (element.properties[*place].count_type)
                 fail({origin_.file, element.line, {}}, quote(names[i]) + " is a list, not a number");
-            roles[*place] = i;
+            roles.of[*place] = i;
         }
 
         const auto place_of = [&](const char* name) {
@@ -89,21 +89,32 @@ private:
         };
         const auto uv = std::find_if(uv_names.begin(), uv_names.end(),
                                      [&](const auto& pair) { return place_of(pair[0]) && place_of(pair[1]); });
-        const bool with_uvs = uv != uv_names.end();
-        if (with_uvs) roles[*place_of((*uv)[0])] = u, roles[*place_of((*uv)[1])] = v;
+        roles.with_uvs = uv != uv_names.end();
+        if (roles.with_uvs) {
+            roles.of[*place_of((*uv)[0])] = PlyVertexRoles::u;
+            roles.of[*place_of((*uv)[1])] = PlyVertexRoles::v;
+        }
 
         mesh_.positions.reserve(element.count);
-        if (with_normals) mesh_.normals.reserve(element.count);
-        for (std::size_t i = 0; i < element.count; ++i) {
-            std::array<double, without> values{};
-            data_.begin(element, i);
-            for (std::size_t p = 0; p < element.properties.size(); ++p)
-                if (roles[p] < without) values[roles[p]] = data_.next(element.properties[p].type);
-                else skip(element.properties[p]);
-            mesh_.positions.emplace_back(values[0], values[1], values[2]);
-            if (with_normals) mesh_.normals.emplace_back(values[3], values[4], values[5]);
-            if (with_uvs) mesh_.uvs.emplace_back(values[u], values[v]);
+        if (roles.with_normals) mesh_.normals.reserve(element.count);
+        if (roles.with_uvs) mesh_.uvs.reserve(element.count);
+        const auto read = is_ascii() ? read_ascii_vertices : read_binary_vertices;
+        for (std::size_t i = 0; i < element.count;) {
+            i += read(data_, element, roles, element.count - i, mesh_);
+            if (i < element.count) vertex(element, roles, i++);
         }
+        lacks_normals_ = std::find(mesh_.normals.begin(), mesh_.normals.end(), DVec3(0)) != mesh_.normals.end();
+    }
+
+    void vertex(const PlyElement& element, const PlyVertexRoles& roles, std::size_t index) {
+        std::array<double, PlyVertexRoles::none> values{};
+        data_.begin(element, index);
+        for (std::size_t p = 0; p < element.properties.size(); ++p)
+            if (roles.of[p] != PlyVertexRoles::none) values[roles.of[p]] = data_.next(element.properties[p].type);
+            else skip(element.properties[p]);
+        mesh_.positions.emplace_back(values[0], values[1], values[2]);
+        if (roles.with_normals) mesh_.normals.emplace_back(values[3], values[4], values[5]);
+        if (roles.with_uvs) mesh_.uvs.emplace_back(values[PlyVertexRoles::u], values[PlyVertexRoles::v]);
     }
 
     void faces(const PlyElement& element) {
@@ -114,13 +125,33 @@ private:
             fail(header, "the element " + quote(element.name) + " has no list called \"vertex_indices\"");
         if (mesh_.positions.empty()) fail(header, "there are no vertices");
 
-        for (std::size_t i = 0; i < element.count; ++i) {
-            data_.begin(element, i);
+        const bool is_face = element.name == "face";
+        std::optional<PlyFaceLayout> layout;
+        if (is_face && !lacks_normals_)  // where normals are missing, each face that uses one is a notice
+            layout = PlyFaceLayout::of(element, *place, header_.format, mesh_.positions.size());
+        // As many as there are faces, but for a count that cannot be true.
+        if (layout) mesh_.triangles.reserve(mesh_.triangles.size() + std::min(element.count, data_.rest().size() / 6));
+        for (std::size_t i = 0; i < element.count;) {
+            if (layout) i += faces(element, *layout, i);
+            if (i == element.count) break;
+            data_.begin(element, i++);
             for (std::size_t p = 0; p < element.properties.size(); ++p)
                 if (p != *place) skip(element.properties[p]);
-                else if (element.name == "face") polygon(element.properties[p]);
+                else if (is_face) polygon(element.properties[p]);
                 else strips(element.properties[p]);
         }
+    }
+
+    /// Those from number `first` on, while nothing is out of the ordinary.
+    std::size_t faces(const PlyElement& element, const PlyFaceLayout& layout, std::size_t first) {
+        const auto polygon = [&](std::size_t index, std::span<const std::uint32_t> corners) {
+            if (cutter_.cut(corners, mesh_)) return;
+            data_.begin(element, first + index);
+            notices_.add(data_.place(), crossing_polygon);
+        };
+        const std::size_t count = element.count - first;
+        return is_ascii() ? read_ascii_faces(data_, element, layout, count, mesh_, polygon)
+                          : read_binary_faces(data_, element, layout, count, mesh_, polygon);
     }
 
     void polygon(const PlyProperty& property) {
@@ -181,6 +212,8 @@ private:
         for (double i = 0; i < values; ++i) data_.skip(property.type);
     }
 
+    bool is_ascii() const { return header_.format == PlyHeader::Format::ascii; }
+
     PlyHeader header_;
     PlyData data_;
     Origin origin_;
@@ -188,14 +221,15 @@ private:
     std::vector<std::uint32_t> corners_;
     PolygonCutter cutter_;
     Mesh mesh_;
+    bool lacks_normals_ = false;
     FileNotices notices_;
 };
 
 }  // namespace detail
 
 inline Mesh load_ply(const std::filesystem::path& path, FileNormals normals, Notices* notices) {
-    const std::string bytes = read_file(path, detail::max_mesh_bytes);
-    return detail::PlyReader(detail::without_byte_order_mark(bytes), path.string(), normals).read(notices);
+    const FileBytes file(path, detail::max_mesh_bytes);
+    return detail::PlyReader(detail::without_byte_order_mark(file.view()), path.string(), normals).read(notices);
 }
 
 }  // namespace lightswitch

@@ -64,6 +64,15 @@ public:
         error("the file goes on after its last element");
     }
 
+    // For those who read ahead: what is left, and going over some of it, which ends so many lines.
+    std::string_view rest() const { return rest_; }
+    PlyHeader::Format format() const { return format_; }
+    char line_end() const { return line_end_; }
+    void pass(std::size_t bytes, int lines) {
+        rest_.remove_prefix(bytes);
+        line_ += lines;
+    }
+
     /// The element that is being read.
     Origin place() const {
         const bool ascii = format_ == PlyHeader::Format::ascii;

@@ -22,11 +22,17 @@ std::optional<double> parse_number(std::string_view word);
 /// The same for an integer that fits in 64 bits.
 std::optional<std::int64_t> parse_integer(std::string_view word);
 
+inline bool is_blank(char c) { return c == ' ' || c == '\t'; }
+inline bool is_line_end(char c) { return c == '\n' || c == '\r'; }
+
 /// Cuts the first word off `text`; empty at the end. Words are separated by any of `separators`.
 std::string_view next_word(std::string_view& text, std::string_view separators = " \t\r\n");
 
 /// Cuts the first line off `text`; its end (LF, CRLF or CR) is not part of it.
 std::string_view next_line(std::string_view& text);
+
+/// `text` without blanks and ends of lines at both ends.
+std::string_view trimmed(std::string_view text);
 
 /// `text` without the mark that some programs begin UTF-8 with.
 std::string_view without_byte_order_mark(std::string_view text);
@@ -84,6 +90,12 @@ inline std::string_view next_line(std::string_view& text) {
     text.remove_prefix(end);
     text.remove_prefix(text.starts_with("\r\n") ? 2 : std::min<std::size_t>(text.size(), 1));
     return line;
+}
+
+inline std::string_view trimmed(std::string_view text) {
+    constexpr std::string_view blanks = " \t\r\n";
+    text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
+    return text.substr(0, text.find_last_not_of(blanks) + 1);
 }
 
 inline std::string_view without_byte_order_mark(std::string_view text) {

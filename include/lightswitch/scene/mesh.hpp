@@ -20,9 +20,11 @@ struct Mesh {
 
     /// The mesh under an affine, invertible `matrix`; normals follow the inverse transpose, and a reflection leaves the
     /// front where the transformed normals point (it also swaps the winding, so that front and normals stay together).
-    Mesh transformed(const DMat4& matrix) const;
+    Mesh transformed(const DMat4& matrix) const&;
+    Mesh transformed(const DMat4& matrix) &&;  ///< without a copy
     /// The mesh with front and back exchanged.
-    Mesh flipped() const;
+    Mesh flipped() const&;
+    Mesh flipped() &&;  ///< without a copy
     /// Replaces the normals by angle-weighted averages over the triangles around each position (Thuermer and Wuethrich,
     /// "Computing Vertex Normals from Polygonal Facets", JGT 1998), as Mitsuba does. Triangles without area do not
     /// count; a position without any other triangle gets (1, 0, 0).
@@ -32,6 +34,8 @@ struct Mesh {
     void face_along_normals();
 
 private:
+    void transform(const DMat4& matrix);
+    void flip();
     /// Normal of a triangle by its winding, not normalized: its length is twice the area.
     DVec3 area_normal(const std::array<std::uint32_t, 3>& t) const;
 };
@@ -43,9 +47,19 @@ inline double linear_determinant(const DMat4& matrix) {
     return glm::dot(DVec3(matrix[0]), glm::cross(DVec3(matrix[1]), DVec3(matrix[2])));
 }
 
-inline Mesh Mesh::transformed(const DMat4& matrix) const {
+inline Mesh Mesh::transformed(const DMat4& matrix) const& {
     Mesh result = *this;
-    for (DVec3& p : result.positions) p = DVec3(matrix * glm::dvec4(p, 1.0));
+    result.transform(matrix);
+    return result;
+}
+
+inline Mesh Mesh::transformed(const DMat4& matrix) && {
+    transform(matrix);
+    return std::move(*this);
+}
+
+inline void Mesh::transform(const DMat4& matrix) {
+    for (DVec3& p : positions) p = DVec3(matrix * glm::dvec4(p, 1.0));
 
     // The inverse transpose up to a positive factor, by columns. The scale is taken out first, against underflow.
     double scale = 0;
@@ -55,21 +69,29 @@ inline Mesh Mesh::transformed(const DMat4& matrix) const {
     const bool reflection = glm::dot(x, glm::cross(y, z)) < 0;
     const double sign = reflection ? -1 : 1;
     const DVec3 nx = sign * glm::cross(y, z), ny = sign * glm::cross(z, x), nz = sign * glm::cross(x, y);
-    for (DVec3& n : result.normals) {
+    for (DVec3& n : normals) {
         const DVec3 turned = n.x * nx + n.y * ny + n.z * nz;
         n = turned / glm::length(turned);
     }
 
     if (reflection)
-        for (auto& t : result.triangles) std::swap(t[1], t[2]);
+        for (auto& t : triangles) std::swap(t[1], t[2]);
+}
+
+inline Mesh Mesh::flipped() const& {
+    Mesh result = *this;
+    result.flip();
     return result;
 }
 
-inline Mesh Mesh::flipped() const {
-    Mesh result = *this;
-    for (DVec3& n : result.normals) n = -n;
-    for (auto& t : result.triangles) std::swap(t[1], t[2]);
-    return result;
+inline Mesh Mesh::flipped() && {
+    flip();
+    return std::move(*this);
+}
+
+inline void Mesh::flip() {
+    for (DVec3& n : normals) n = -n;
+    for (auto& t : triangles) std::swap(t[1], t[2]);
 }
 
 inline DVec3 Mesh::area_normal(const std::array<std::uint32_t, 3>& t) const {
@@ -78,16 +100,17 @@ inline DVec3 Mesh::area_normal(const std::array<std::uint32_t, 3>& t) const {
 
 inline void Mesh::smooth() {
     normals.assign(positions.size(), DVec3(0));
-    for (const auto& t : triangles) {
-        const DVec3 normal = area_normal(t);
+    for (const auto& [first, second, third] : triangles) {
+        const DVec3 &a = positions[first], &b = positions[second], &c = positions[third];
+        const DVec3 ab = b - a, ac = c - a, bc = c - b;
+        const DVec3 normal = glm::cross(ab, ac);
         const double length = glm::length(normal);
         if (!(length > 0)) continue;
-        for (std::size_t i = 0; i < 3; ++i) {
-            const DVec3 a = positions[t[(i + 1) % 3]] - positions[t[i]];
-            const DVec3 b = positions[t[(i + 2) % 3]] - positions[t[i]];
-            // The length of the cross product is the same at all three corners; atan2 is exact for thin triangles too.
-            normals[t[i]] += normal / length * std::atan2(length, glm::dot(a, b));
-        }
+        const DVec3 unit = normal / length;
+        // The length of the cross product is the same at all three corners; atan2 is exact for thin triangles too.
+        normals[first] += unit * std::atan2(length, glm::dot(ab, ac));
+        normals[second] += unit * std::atan2(length, -glm::dot(bc, ab));
+        normals[third] += unit * std::atan2(length, glm::dot(ac, bc));
     }
     for (DVec3& n : normals) {
         const double length = glm::length(n);
