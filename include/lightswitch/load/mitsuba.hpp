@@ -5,8 +5,7 @@
 #include <lightswitch/load/mitsuba_camera.hpp>
 #include <lightswitch/load/mitsuba_emitter.hpp>
 #include <lightswitch/load/mitsuba_shape.hpp>
-
-#include <functional>
+#include <lightswitch/scene/framing.hpp>
 
 namespace lightswitch {
 
@@ -16,8 +15,6 @@ struct MitsubaOptions {
     Strictness strictness = Strictness::strict;
     std::vector<std::filesystem::path> search_paths{};  ///< where files are that are not beside the scene file
     std::string sensor{};  ///< the id of a `<sensor>`, or its number from 0; empty: the first one
-    /// Places the camera of a scene that has no `<sensor>`; without it that is a problem.
-    std::function<void(LibraryDescription&)> frame{};
     Notices* notices = nullptr;    ///< gets what was skipped, guessed or upgraded without another image in mind
     Problems* problems = nullptr;  ///< gets what the file asks for and does not get
 };
@@ -100,8 +97,9 @@ private:
 
     void place_camera(const XmlElement& element) {
         if (!options_.sensor.empty()) element.error("there is no <sensor>, and so none to choose");
-        if (options_.frame) options_.frame(scene_);
-        else element.problem("", "there is no camera: add a <sensor>", default_camera);
+        scene_.film = default_film(element.origin());
+        log_.notice(element.origin(), "there is no <sensor>: the camera is placed so that it sees all shapes");
+        log_.attempt(default_camera, [&] { frame_scene(scene_); });
     }
 
     const MitsubaOptions& options_;

@@ -164,12 +164,12 @@ private:
         if (flip_v)
             for (Vec2& uv : mesh.uvs) uv.y = 1 - uv.y;
         const bool has_normals = !mesh.normals.empty();
-        mesh = mesh.transformed(to_world);
+        mesh = std::move(mesh).transformed(to_world);
         // As in Mitsuba 3.9, where there are no normals in the file a reflection turns the winding, and so the mesh
         // inside out.
-        if (!has_normals && linear_determinant(to_world) < 0) mesh = mesh.flipped();
+        if (!has_normals && linear_determinant(to_world) < 0) mesh = std::move(mesh).flipped();
         if (!has_normals && !flat) mesh.smooth();
-        return flip ? mesh.flipped() : mesh;
+        return flip ? std::move(mesh).flipped() : mesh;
     }
 
     const XmlFile& file_;
