@@ -64,7 +64,10 @@ std::string lights_text(const SceneSummary& summary, const SceneStatistics& stat
 }  // namespace
 
 int info(const SceneOptions& options) {
-    const LoadedScene loaded = load_scene(options);
+    // Whatever is wrong with the file is said here, so it must be read to its end.
+    SceneOptions to_the_end = options;
+    to_the_end.lenient = true;
+    const LoadedScene loaded = load_scene(to_the_end, false, StandIns::keep);
     const SceneSummary& summary = loaded.summary;
     std::visit(
         [&](const auto& scene) {
@@ -97,6 +100,10 @@ int info(const SceneOptions& options) {
                                       statistics.build_seconds * 1e3));
         },
         loaded.scene);
+    if (summary.stand_ins.empty()) return success;
+    line("problems", fmt::format("{} not supported; with --lenient a render goes on like this:",
+                                 count_text(summary.stand_ins.size(), "thing is", "things are")));
+    for (const std::string& text : summary.stand_ins) line("", text);
     return success;
 }
 

@@ -13,9 +13,30 @@
 namespace lightswitch::program {
 namespace {
 
-LibraryDescription describe(const SceneOptions& options, Notices& notices) {
+/// One line for a problem and what was done about it.
+std::string line(const Problem& problem) { return fmt::format("{}; {}", problem.text, problem.instead); }
+
+LibraryDescription load_file(const SceneOptions& options, Notices& notices, Problems& problems) {
+    try {
+        return load_mitsuba(options.scene,
+                            MitsubaOptions{.defines = options.defines,
+                                           .strictness = options.lenient ? Strictness::lenient : Strictness::strict,
+                                           .search_paths = options.search_paths,
+                                           .sensor = options.sensor,
+                                           .notices = &notices,
+                                           .problems = &problems});
+    } catch (const UnsupportedScene& error) {
+        const std::size_t count = error.problems().size();
+        throw Error(fmt::format("{} ({}: \"lightswitch info\" lists {}, --lenient goes on with stand-ins)", error.what(),
+                                count == 1 ? "the only thing that is not supported"
+                                           : fmt::format("{} things are not supported", count),
+                                count == 1 ? "it" : "them"));
+    }
+}
+
+LibraryDescription describe(const SceneOptions& options, Notices& notices, Problems& problems) {
     const std::string& scene = options.scene;
-    if (scene.size() >= 4 && scene.ends_with(".xml")) return load_mitsuba(scene, options.defines, &notices);
+    if (scene.size() >= 4 && scene.ends_with(".xml")) return load_file(options, notices, problems);
     const auto stock = stock::describe(scene);
     if (!stock) {
         std::error_code ignored;
@@ -25,6 +46,7 @@ LibraryDescription describe(const SceneOptions& options, Notices& notices) {
                                 suggestion(scene, stock::names), list(stock::names)));
     }
     if (!options.defines.empty()) throw Error("--define: the stock scenes have no parameters");
+    if (!options.sensor.empty()) throw Error("--sensor: the stock scenes have one camera each");
     return *stock;
 }
 
@@ -46,7 +68,9 @@ SceneSummary summarize(const LibraryDescription& scene) {
                          .rr_depth = scene.rr_depth,
                          .samples = scene.samples,
                          .materials = {},
-                         .files = {scene.files.begin(), scene.files.end()}};
+                         .files = {scene.files.begin(), scene.files.end()},
+                         .exposure = scene.exposure,
+                         .stand_ins = {}};
     const auto count = [&](const auto& shape) {
         const bool mesh = std::holds_alternative<Mesh>(shape.geometry);
         summary.meshes += mesh ? 1 : 0;
@@ -84,11 +108,16 @@ void resize(FilmDescription& film, int width, int height) {
 
 }  // namespace
 
-LoadedScene load_scene(const SceneOptions& options, bool quiet) {
+LoadedScene load_scene(const SceneOptions& options, bool quiet, StandIns tell_stand_ins) {
     Notices notices;
-    LibraryDescription description = describe(options, notices);
+    Problems problems;
+    LibraryDescription description = describe(options, notices, problems);
     if (!quiet)
         for (const std::string& notice : notices) print_warning(notice);
+    std::vector<std::string> stand_ins;
+    for (const Problem& problem : problems) stand_ins.push_back(line(problem));
+    if (tell_stand_ins == StandIns::warn)
+        for (const std::string& text : stand_ins) print_warning(text);
     const FilmDescription& film = description.film;
     if (options.size) {
         resize(description.film, options.size->width, options.size->height);
@@ -100,6 +129,7 @@ LoadedScene load_scene(const SceneOptions& options, bool quiet) {
     }
     if (options.filter) description.film.filter = *options.filter;
     SceneSummary summary = summarize(description);
+    summary.stand_ins = std::move(stand_ins);
     const DivertedOutput embree_may_talk;
     return {std::move(summary), build_any(description, options.build)};
 }

@@ -18,6 +18,8 @@ struct SceneSummary {
     std::size_t environments = 0, point_lights = 0, spot_lights = 0, directional_lights = 0;
     std::map<std::string, std::size_t> materials;  ///< by kind
     std::vector<std::filesystem::path> files;      ///< that were read
+    std::optional<float> exposure;                 ///< stops that the scene asks for
+    std::vector<std::string> stand_ins;            ///< what was not as the scene file says, a line each
 };
 
 struct LoadedScene {
@@ -25,9 +27,12 @@ struct LoadedScene {
     AnyScene scene;
 };
 
-/// Reads and builds the scene, and unless `quiet` warns of what its mesh files hold that is skipped or guessed. Throws
-/// `Error` for whatever is wrong with it.
-LoadedScene load_scene(const SceneOptions& options, bool quiet = false);
+/// Whether there are warnings of stand-ins, or the summary alone tells of them.
+enum class StandIns { warn, keep };
+
+/// Reads and builds the scene, warns of stand-ins, and unless `quiet` of what its files hold that is skipped or guessed.
+/// Throws `Error` for whatever is wrong with it; that of a strict reading says how to go on.
+LoadedScene load_scene(const SceneOptions& options, bool quiet = false, StandIns tell = StandIns::warn);
 
 /// How long paths may become: as the command line says, or else the scene, or else as usual.
 PathLength path_length(const SceneSummary& summary, const std::optional<int>& max_depth,

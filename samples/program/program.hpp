@@ -28,6 +28,9 @@ struct Size {
 struct SceneOptions {
     std::string scene;  ///< a file that ends in .xml, or the name of a stock scene
     std::map<std::string, std::string> defines;
+    std::vector<std::filesystem::path> search_paths;  ///< where files are that are not beside the scene
+    std::string sensor;                               ///< id or number; empty: the first one
+    bool lenient = false;                             ///< stand-ins for what is not supported
     std::optional<Size> size;      ///< instead of what the scene says
     int shrink_to = 0;             ///< where `size` is not given, the longest side in pixels; 0: as the scene says
     std::optional<Filter> filter;  ///< instead of what the scene says
@@ -57,7 +60,8 @@ struct RenderOptions {
     std::uint64_t seed = 0;
     int threads = 0;
     Sampling sampling = Sampling::sobol;
-    float exposure = 0;
+    std::optional<float> exposure;  ///< stops; nothing: what the scene says, or chosen by the image
+    bool auto_exposure = false;     ///< by the image, whatever the scene says
     bool quiet = false;
 };
 

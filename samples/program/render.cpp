@@ -69,7 +69,27 @@ std::vector<Layer> render_extra(const RenderOptions& options, const LoadedScene&
     return layers;
 }
 
-std::string summary_line(const AnyMethod& method, const Rendered& rendered, const RenderOptions& options) {
+/// Stops for the pictures among the outputs; nothing when there are none.
+std::optional<float> exposure_of_pictures(const RenderOptions& options, const SceneSummary& summary,
+                                          const Image& image) {
+    if (std::none_of(options.outputs.begin(), options.outputs.end(), is_picture)) return {};
+    if (options.exposure) return *options.exposure;
+    if (summary.exposure && !options.auto_exposure) return *summary.exposure;
+    return auto_exposure(image);
+}
+
+/// What stood in for what the scene file says, where the format of the image can hold it.
+void keep_stand_ins(Image& image, const std::vector<std::string>& stand_ins) {
+    constexpr std::size_t most = 50;  // a header should not outgrow its image
+    if (stand_ins.empty()) return;
+    const auto end = stand_ins.begin() + static_cast<std::ptrdiff_t>(std::min(most, stand_ins.size()));
+    std::string text = fmt::format("{}", fmt::join(stand_ins.begin(), end, " | "));
+    if (stand_ins.size() > most) text += fmt::format(" | and {} more", stand_ins.size() - most);
+    image.metadata["stand_ins"] = text;
+}
+
+std::string summary_line(const AnyMethod& method, const Rendered& rendered, const RenderOptions& options,
+                         const std::optional<float>& exposure) {
     const RenderStatistics& statistics = rendered.statistics;
     std::string text =
         fmt::format("{} ({}): {} samples per pixel in {:.3f} s, {:.2f} Mrays/s", method_name(method),
@@ -77,6 +97,7 @@ std::string summary_line(const AnyMethod& method, const Rendered& rendered, cons
                     statistics.seconds > 0 ? 1e-6 * double(statistics.counts.rays) / statistics.seconds : 0);
     if (std::isfinite(rendered.estimated_error))
         text += fmt::format(", estimated error {:.2g} %", 100 * rendered.estimated_error);
+    if (exposure) text += fmt::format(", exposure {:.2g} stops", *exposure);
     for (std::size_t i = 0; i < options.outputs.size(); ++i)
         text += (i == 0 ? "; wrote " : ", ") + options.outputs[i].string();
     return text + "\n";
@@ -125,12 +146,14 @@ int render(const RenderOptions& options) {
         return Status::cancelled;
     }
     warn_about_values(statistics.counts, rendered.image);
+    keep_stand_ins(rendered.image, loaded.summary.stand_ins);
+    const auto exposure = exposure_of_pictures(options, loaded.summary, rendered.image);
     for (const auto& output : options.outputs)
-        write_image(output, rendered.image, {.exposure = options.exposure}, layers);
-    if (!options.stats.empty()) write_text(options.stats, statistics_json(loaded.scene, method, options, rendered));
+        write_image(output, rendered.image, {.exposure = exposure.value_or(0)}, layers);
+    if (!options.stats.empty()) write_text(options.stats, statistics_json(loaded, method, options, rendered));
     // Whoever reads the statistics from standard output wants nothing else there.
     if (!options.quiet)
-        fmt::print(options.stats == "-" ? stderr : stdout, "{}", summary_line(method, rendered, options));
+        fmt::print(options.stats == "-" ? stderr : stdout, "{}", summary_line(method, rendered, options, exposure));
     if (!statistics.cancelled) return success;
     print_note(fmt::format("cancelled: the image holds {} samples per pixel", statistics.iterations));
     return Status::cancelled;

@@ -26,14 +26,14 @@ Json non_finite(const RenderCounts& counts, int width) {
 
 }  // namespace
 
-std::string statistics_json(const AnyScene& scene, const AnyMethod& method, const RenderOptions& options,
+std::string statistics_json(const LoadedScene& loaded, const AnyMethod& method, const RenderOptions& options,
                             const Rendered& rendered) {
     const RenderStatistics& statistics = rendered.statistics;
     const RenderCounts& counts = statistics.counts;
     const DVec3 mean = rendered.image.mean();
     const double width = rendered.image.width(), height = rendered.image.height();
     const auto per_second = [&](double amount) { return statistics.seconds > 0 ? amount / statistics.seconds : 0; };
-    const std::string_view scene_type = scene_type_name(scene);
+    const std::string_view scene_type = scene_type_name(loaded.scene);
 
     Json json{{"method", method_name(method)},
               {"kind", name(method_kind(method))},
@@ -60,6 +60,7 @@ std::string statistics_json(const AnyScene& scene, const AnyMethod& method, cons
         method);
     for (const auto& setting : settings_of(method))
         std::visit([&](auto value) { json[std::string(setting.first)] = value; }, setting.second);
+    json["stand_ins"] = loaded.summary.stand_ins;
     json["mean"] = {mean.x, mean.y, mean.z};
     json["estimated_error"] = rendered.estimated_error;
     json["non_finite"] = counts.non_finite;
@@ -77,7 +78,7 @@ std::string statistics_json(const AnyScene& scene, const AnyMethod& method, cons
             json["scene_bytes"] = of_scene.scene_bytes;
             json["camera"] = built.camera_id();
         },
-        scene);
+        loaded.scene);
     for (const auto& [key, value] : statistics.of_method) json[key] = value;
     json["embree_version"] = RTC_VERSION_STRING;
     json["lightswitch_version"] = version();

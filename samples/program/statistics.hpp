@@ -2,6 +2,7 @@
 
 // What --stats writes.
 
+#include "load.hpp"
 #include "program.hpp"
 #include "run.hpp"
 
@@ -10,7 +11,7 @@
 namespace lightswitch::program {
 
 /// The numbers of a render as JSON text. Programs read it: keys are added, never renamed.
-std::string statistics_json(const AnyScene& scene, const AnyMethod& method, const RenderOptions& options,
+std::string statistics_json(const LoadedScene& loaded, const AnyMethod& method, const RenderOptions& options,
                             const Rendered& rendered);
 
 }  // namespace lightswitch::program

@@ -73,6 +73,11 @@ inline void save(const std::filesystem::path& path, const Image& image, const Sa
     }
 }
 
+/// Whether a file of that name holds what a screen shows, at an exposure: .png does.
+inline bool is_picture(const std::filesystem::path& path) {
+    return detail::image_format(path) == detail::ImageFormat::png;
+}
+
 /// Whether a file of that name can hold layers: those of .exr can.
 inline bool can_hold_layers(const std::filesystem::path& path) {
     return detail::image_format(path) == detail::ImageFormat::exr;

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace lightswitch {
 
@@ -45,6 +46,12 @@ inline Rgb expose(const Rgb& radiance, float stops) {
     return {channel(radiance.x), channel(radiance.y), channel(radiance.z)};
 }
 
+/// Stops that make the image's middle brightness a middle grey: the geometric mean of the pixels' luminance becomes
+/// 0.18 (Reinhard et al., "Photographic Tone Reproduction for Digital Images", 2002, section 3). Pixels that are black or
+/// not finite do not count, nor do the darkest and the brightest percent of the others, which may be noise. To a tenth
+/// of a stop, so that what a program prints says all of it; 0 for an image in which nothing counts.
+float auto_exposure(const Image& image);
+
 /// 8-bit sRGB of linear RGB in [0,1], rounded to the nearest.
 inline std::array<std::uint8_t, 3> to_srgb8(const Rgb& linear) {
     const auto channel = [](float value) { return static_cast<std::uint8_t>(srgb_encode(value) * 255 + 0.5f); };
@@ -58,6 +65,19 @@ inline std::string tone_map(const Image& image, float stops) {
     for (const Rgb& pixel : image.pixels())
         for (const std::uint8_t value : to_srgb8(expose(pixel, stops))) bytes += static_cast<char>(value);
     return bytes;
+}
+
+inline float auto_exposure(const Image& image) {
+    std::vector<float> brightness;
+    for (const Rgb& pixel : image.pixels())
+        if (const float value = luminance(pixel); is_finite(pixel) && value > 0) brightness.push_back(std::log2(value));
+    if (brightness.empty()) return 0;
+    std::sort(brightness.begin(), brightness.end());
+    const auto cut = static_cast<std::ptrdiff_t>(brightness.size() / 100);
+    double sum = 0;
+    for (auto value = brightness.begin() + cut; value != brightness.end() - cut; ++value) sum += *value;
+    const double mean = sum / static_cast<double>(std::ssize(brightness) - 2 * cut);
+    return static_cast<float>(std::round(10 * (std::log2(0.18) - mean)) / 10);
 }
 
 }  // namespace lightswitch

@@ -26,19 +26,30 @@ inline std::optional<double> index_of_refraction(const std::string& name) {
 inline double read_index_of_refraction(XmlElement& element, const std::string& name, const std::string& otherwise) {
     if (element.has_string(name) || !element.has(name)) {
         const std::string medium = element.text(name).value_or(otherwise);
-        const auto index = index_of_refraction(medium);
-        if (!index) fail(element.origin(name), "unknown medium " + quote(medium) + ": give the index as a <float>");
-        return *index;
+        if (const auto index = index_of_refraction(medium)) return *index;
+        element.problem(name, "unknown medium " + quote(medium) + ": give the index as a <float>",
+                        "it is " + quote(otherwise));
+        return *index_of_refraction(otherwise);
     }
-    const double index = *element.number(name);
-    if (!(index > 0)) fail(element.origin(name), "an index of refraction must be above 0");
-    return index;
+    const double index = element.number(name, *index_of_refraction(otherwise));
+    if (index > 0) return index;
+    element.problem(name, "an index of refraction must be above 0", "it is " + quote(otherwise));
+    return *index_of_refraction(otherwise);
 }
 
 /// `eta` of a model with two media, by Mitsuba's parameters and defaults.
 inline float read_relative_index(XmlElement& element, const std::string& inside, const std::string& outside = "air") {
     const double index = read_index_of_refraction(element, "int_ior", inside);
     return static_cast<float>(index / read_index_of_refraction(element, "ext_ior", outside));
+}
+
+/// The value, or the nearest one in the range. Roughness goes no lower than in Mitsuba.
+inline float clamped(XmlElement& element, const std::string& name, const ParameterRange& range, float value) {
+    if (range.contains(value)) return value;
+    const float least = range.open ? std::max(range.least, 1e-4f) : range.least;
+    const float result = std::clamp(value, least, range.most);
+    element.problem(name, number_text(value) + outside(range), "it is " + number_text(result));
+    return result;
 }
 
 /// The parameters of a model that are plain numbers and colours; what the file leaves out, and what a texture will
@@ -49,12 +60,14 @@ void read_parameters(XmlElement& element, B& model) {
         if (!parameter.varies) return;
         const std::string name(parameter.name);
         if (!element.has(name)) return;
-        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(model.*parameter.member)>, float>)
-            parameter.set(model, static_cast<float>(*element.number(name)));
-        else
-            parameter.set(model,
-                          element.color(name, Rgb(0),
-                                        name == "eta" || name == "k" ? SpectrumUse::index : SpectrumUse::reflectance));
+        const auto in_range = [&](float value) { return clamped(element, name, parameter.range, value); };
+        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(model.*parameter.member)>, float>) {
+            if (const auto value = element.number(name)) parameter.set(model, in_range(static_cast<float>(*value)));
+        } else {
+            const Rgb value = element.color(name, model.*parameter.member,
+                                            name == "eta" || name == "k" ? SpectrumUse::index : SpectrumUse::reflectance);
+            parameter.set(model, {in_range(value.x), in_range(value.y), in_range(value.z)});
+        }
     });
 }
 
@@ -63,9 +76,12 @@ template <class Metal>
 void read_metal_name(XmlElement& element, Metal& metal) {
     const auto material = element.text("material");
     if (!material || *material == "none") return;
-    if (element.has("eta") || element.has("k")) element.error("give either material, or eta and k");
+    if (element.has("eta") || element.has("k"))
+        return element.problem("material", "give either material, or eta and k", "it is ignored");
     const auto index = metal_by_name(*material);
-    if (!index) fail(element.origin("material"), "unknown metal " + quote(*material) + "; known are " + metal_names());
+    if (!index)
+        return element.problem("material", "unknown metal " + quote(*material) + "; known are " + metal_names(),
+                               "it reflects everything");
     metal.eta = index->eta;
     metal.k = index->k;
 }
@@ -73,10 +89,8 @@ void read_metal_name(XmlElement& element, Metal& metal) {
 /// `distribution`, and `alpha` against `alpha_u` and `alpha_v`.
 template <class Rough>
 void read_facets(XmlElement& element, Rough& model) {
-    const std::string distribution = lower_case(element.text("distribution").value_or("beckmann"));
-    if (distribution != "ggx" && distribution != "beckmann")
-        fail(element.origin("distribution"), quote(distribution) + " is neither \"beckmann\" nor \"ggx\"");
-    model.distribution = distribution == "ggx" ? Facets::ggx : Facets::beckmann;
+    static const std::map<std::string, Facets> distributions{{"beckmann", Facets::beckmann}, {"ggx", Facets::ggx}};
+    model.distribution = element.one_of("distribution", "beckmann", distributions);
     element.boolean("sample_visible", true);  // changes only the noise
 }
 
@@ -87,6 +101,9 @@ public:
 
     LibraryBsdf read() {
         const std::string type = element_.type();
+        // Exporters gave Mitsuba 0.6 these also where there is no roughness, and it passes over what it does not know.
+        if (element_.is_old() && (type == "conductor" || type == "dielectric" || type == "thindielectric"))
+            element_.accept({"distribution", "alpha", "alpha_u", "alpha_v"});
         if (type == "diffuse") return finished(Lambert{});
         if (type == "conductor") return metal(Conductor{});
         if (type == "roughconductor") return metal(rough(RoughConductor{}));
@@ -102,10 +119,11 @@ public:
             return finished(PrincipledThin{});
         }
         if (type == "roughdiffuse") {
-            element_.boolean("use_fast_approx", false);
-            return finished(RoughDiffuse{});
+            RoughDiffuse model;
+            model.use_fast_approx = element_.boolean("use_fast_approx", false);
+            return finished(model);
         }
-        if (type == "phong") return finished(ModifiedPhong{});
+        if (type == "phong") return within_one(ModifiedPhong{});
         if (type == "ward") return ward();
         element_.unknown_type(
             "diffuse, conductor, roughconductor, dielectric, roughdielectric, thindielectric, plastic, roughplastic, "
@@ -117,14 +135,53 @@ private:
     template <class B>
     LibraryBsdf finished(B model) {
         read_parameters(element_, model);
+        return with_textures(model);
+    }
+    template <class B>
+    LibraryBsdf with_textures(const B& model) {
         LibraryBsdf result = textures_.with_textures(element_, model);
         element_.finish();
+        const std::string problem = std::visit([](const auto& bsdf) { return bsdf.problem(); }, result);
+        if (!problem.empty()) element_.error(problem);
         return result;
+    }
+    /// What Mitsuba 0.6 darkens so that no more light leaves than comes.
+    template <class B>
+    LibraryBsdf within_one(B model) {
+        read_parameters(element_, model);
+        const auto diffuse = element_.texture("diffuse_reflectance"), lobe = element_.texture("specular_reflectance");
+        const Rgb most_diffuse = diffuse ? textures_.read(*diffuse).most() : model.diffuse_reflectance;
+        const Rgb sum = most_diffuse + (lobe ? textures_.read(*lobe).most() : model.specular_reflectance);
+        const float largest = std::max({sum.x, sum.y, sum.z});
+        if (sum_problem(Rgb(0), sum).empty()) return with_textures(model);
+        if (!diffuse && !lobe) {
+            model.diffuse_reflectance *= 0.99f / largest;
+            model.specular_reflectance *= 0.99f / largest;
+            element_.log().notice(element_.origin(), "reflects more than all light, and is darkened as in Mitsuba 0.6");
+        } else if (!lobe) {
+            element_.problem("", "reflects more than all light", "its lobe is darkened");
+            model.specular_reflectance =
+                glm::clamp(Rgb(1) - most_diffuse, Rgb(0), model.specular_reflectance);
+        }
+        return with_textures(model);
     }
     template <class B>
     LibraryBsdf metal(B model) {
         read_metal_name(element_, model);
-        return finished(model);
+        read_parameters(element_, model);
+        // Of Mitsuba 0.6: what is around the metal.
+        if (element_.has("ext_eta")) {
+            const auto around = static_cast<float>(read_index_of_refraction(element_, "ext_eta", "air"));
+            const bool ideal = model.eta == Rgb(0);
+            model.eta /= around;
+            if (!ideal) model.k /= around;
+        }
+        for (int c = 0; c < 3; ++c)
+            if (model.eta[c] == 0 && model.k[c] == 0) {
+                element_.problem("", "eta and k are both 0 in one component", "it reflects everything there");
+                model.k[c] = 1;
+            }
+        return with_textures(model);
     }
     template <class B>
     LibraryBsdf glass(B model, const char* inside) {
@@ -135,7 +192,8 @@ private:
     B rough(B model) {
         read_facets(element_, model);
         const bool u = given("alpha_u"), v = given("alpha_v");
-        if (u != v || (given("alpha") && u)) element_.error("give either alpha, or both alpha_u and alpha_v");
+        if (u != v || (given("alpha") && u))
+            element_.problem("alpha_u", "give either alpha, or both alpha_u and alpha_v", "the others are left as usual");
         return model;
     }
     bool given(const std::string& name) const { return element_.has(name) || element_.has_object(name); }
@@ -149,8 +207,8 @@ private:
     LibraryBsdf rough_plastic() {
         RoughPlastic facets;
         read_facets(element_, facets);
-        const auto alpha = static_cast<float>(element_.number("alpha", 0.1));
-        if (!as_roughness.contains(alpha)) fail(element_.origin("alpha"), "must be above 0 and at most 1");
+        const float alpha =
+            clamped(element_, "alpha", as_roughness, static_cast<float>(element_.number("alpha", 0.1)));
         const float eta = read_relative_index(element_, "polypropylene");
         if (!as_relative_index.contains(eta)) element_.error("the index of refraction is impossible");
         RoughPlastic model{.distribution = facets.distribution, .alpha = alpha, .eta = eta};
@@ -162,9 +220,10 @@ private:
         ignore_rates({"main_specular_sampling_rate", "clearcoat_sampling_rate", "diffuse_reflectance_sampling_rate"});
         Principled model;
         const bool transmits = element_.has_object("spec_trans") || element_.number("spec_trans", 0) != 0;
-        const auto eta = element_.number("eta"), specular = element_.number("specular");
-        if (eta && specular) element_.error("give either eta or specular");
-        if (specular && !(*specular >= 0 && *specular <= 1)) fail(element_.origin("specular"), "must be from 0 to 1");
+        const auto eta = element_.number("eta");
+        auto specular = element_.number("specular");
+        if (eta && specular) element_.problem("specular", "give either eta or specular", "it is ignored");
+        if (specular) specular = clamped(element_, "specular", as_fraction, static_cast<float>(*specular));
         model.eta = eta ? Principled::eta_from_eta(static_cast<float>(*eta), transmits)
                         : Principled::eta_from_specular(static_cast<float>(specular.value_or(0.5)), transmits);
         return finished(model);
@@ -173,11 +232,7 @@ private:
     LibraryBsdf ward() {
         static const std::map<std::string, WardVariant> variants{
             {"ward", WardVariant::ward}, {"ward-duer", WardVariant::ward_duer}, {"balanced", WardVariant::balanced}};
-        const std::string variant = lower_case(element_.text("variant").value_or("balanced"));
-        const auto found = variants.find(variant);
-        if (found == variants.end())
-            fail(element_.origin("variant"), quote(variant) + " is none of ward, ward-duer and balanced");
-        return finished(Ward{.variant = found->second});
+        return within_one(Ward{.variant = element_.one_of("variant", "balanced", variants)});
     }
 
     /// Parameters that only say how Mitsuba draws its samples.

@@ -7,23 +7,26 @@
 
 namespace lightswitch::detail {
 
-/// Reads the materials of one scene file into a description, one for each `<bsdf>`, however often it is used.
+/// Reads the materials of one scene file into a description, one for each `<bsdf>`, however often it is used. One that
+/// cannot be read is what it contains, or else grey.
 class MaterialReader {
 public:
     MaterialReader(const XmlFile& file, TextureReader& textures, LibraryDescription& scene)
         : file_(file), textures_(textures), scene_(scene) {}
 
-    /// Index of the material of a `<bsdf>` or a `<ref>` to one.
+    /// Index of the material of a `<bsdf>`.
     std::size_t read(pugi::xml_node node) {
-        if (std::string_view(node.name()) == "ref") node = file_.target(node, "bsdf");
-        const auto known = materials_.find(node.offset_debug());
+        const auto known = materials_.find(node);
         if (known != materials_.end()) {
             if (known->second == under_way) fail(file_.origin(node), "the bsdf contains itself");
             return known->second;
         }
-        materials_[node.offset_debug()] = under_way;
-        const std::size_t index = read_new(node);
-        return materials_[node.offset_debug()] = index;
+        materials_[node] = under_way;
+        const bool nested = !nested_bsdfs(node).empty();
+        const std::size_t index = file_.log().attempt(
+            nested ? "the bsdf inside takes its place" : "it is diffuse", [&] { return read_new(node); },
+            [&] { return stand_in(node); });
+        return materials_[node] = index;
     }
 
     /// Mitsuba gives a shape without a BSDF a grey one, or a black one when it is a light.
@@ -39,8 +42,44 @@ public:
         return *invisible_;
     }
 
+    /// What light can meet of a material: itself, but what is inside of a mask.
+    std::size_t unmasked(std::size_t number, bool light, const Origin& origin) {
+        while (scene_.materials[number].layer) {
+            const auto* mask = std::get_if<Mask>(&*scene_.materials[number].layer);
+            if (mask == nullptr) break;
+            number = mask->inner;
+        }
+        return is_masked(scene_, number) ? by_default(light, origin) : number;
+    }
+
 private:
     static constexpr std::size_t under_way = static_cast<std::size_t>(-1);
+
+    std::vector<pugi::xml_node> nested_bsdfs(pugi::xml_node node) const {
+        std::vector<pugi::xml_node> result;
+        for (const pugi::xml_node child : file_.children(node)) {
+            const bool reference = std::string_view(child.name()) == "ref";
+            const pugi::xml_node meant = reference ? file_.target(child) : child;
+            if (meant && std::string_view(meant.name()) == "bsdf") result.push_back(meant);
+        }
+        return result;
+    }
+
+    /// What takes the place of a bsdf that cannot be read: the first one inside, or a diffuse one of the colour that it
+    /// has.
+    std::size_t stand_in(pugi::xml_node node) {
+        for (const pugi::xml_node inner : nested_bsdfs(node)) {
+            try {
+                return read(inner);
+            } catch (const Error&) {  // it contains the other; which has been told
+            }
+        }
+        Rgb color(0.5f);
+        XmlElement element(file_, node);
+        for (const char* name : {"reflectance", "diffuse_reflectance", "base_color", "transmittance"})
+            if (element.has(name)) color = glm::clamp(element.color(name, color), 0.0f, 1.0f);
+        return scene_.add(Lambert{.reflectance = color}, file_.origin(node));
+    }
 
     std::size_t read_new(pugi::xml_node node) {
         XmlElement element(file_, node);
@@ -49,10 +88,12 @@ private:
         if (type == "twosided") return read_two_sided(element);
         if (type == "blendbsdf") {
             const Texture weight = textures_.value_or_texture(element, "weight");
-            const auto [first, second] = read_two(element);
+            const auto inner = read_all(element);
+            if (inner.size() != 2) element.error("needs two bsdfs inside, not " + std::to_string(inner.size()));
             element.finish();
-            return add(Blend{first, second, weight}, origin);
+            return add(Blend{inner[0], inner[1], weight}, origin);
         }
+        if (type == "mixturebsdf") return read_mixture(element);
         if (type == "mask") {
             const Texture opacity = textures_.value_or_texture(element, "opacity", 0.5f);
             const std::size_t inner = read_one(element);
@@ -64,13 +105,40 @@ private:
             return add(Mask{by_default(true, origin), Texture(Rgb(0))}, origin);
         }
         if (type == "bumpmap") {
-            BumpMap map{.inner = 0, .height = textures_.only_texture(element)};
+            BumpMap map{.inner = 0, .height = Texture(Rgb(0))};
             map.scale = static_cast<float>(element.number("scale", 1));
+            map.height = textures_.only_texture(element, map.scale);
             return finish_map(element, std::move(map));
         }
         if (type == "normalmap")
             return finish_map(element, NormalMap{.inner = 0, .normals = textures_.texture(element, "normalmap")});
         return scene_.add(BsdfReader(element, textures_).read(), origin);
+    }
+
+    /// Several bsdfs of Mitsuba 0.6, each with its share of the light: blends of two.
+    std::size_t read_mixture(XmlElement& element) {
+        const auto inner = read_all(element);
+        const std::vector<double> weights = parse_list(element.text("weights").value_or(""), element.origin());
+        if (inner.empty() || inner.size() != weights.size())
+            element.error("has " + std::to_string(weights.size()) + " weights for " + std::to_string(inner.size()) +
+                          " bsdfs");
+        double sum = 0;
+        for (const double weight : weights) {
+            if (!(weight >= 0)) fail(element.origin("weights"), "a weight must not be negative");
+            sum += weight;
+        }
+        if (!(std::abs(sum - 1) < 1e-3))
+            element.problem("weights", "the weights do not sum to 1 but to " + number_text(sum),
+                            "they are divided by that");
+        element.finish();
+        std::size_t mixture = inner[0];
+        double so_far = weights[0];
+        for (std::size_t i = 1; i < inner.size(); ++i) {
+            so_far += weights[i];
+            const double share = so_far > 0 ? weights[i] / so_far : 0;
+            mixture = add(Blend{mixture, inner[i], Texture(Rgb(static_cast<float>(share)))}, element.origin());
+        }
+        return mixture;
     }
 
     std::size_t finish_map(XmlElement& element, auto map) {
@@ -86,20 +154,19 @@ private:
         return scene_.add(std::move(layer), origin);
     }
 
+    std::vector<std::size_t> read_all(XmlElement& element) {
+        std::vector<std::size_t> result;
+        for (const pugi::xml_node node : element.objects("bsdf")) result.push_back(read(node));
+        return result;
+    }
     std::size_t read_one(XmlElement& element) {
-        const auto inner = element.objects({"bsdf", "ref"});
+        const auto inner = element.objects("bsdf");
         if (inner.size() != 1) element.error("needs exactly one bsdf inside, not " + std::to_string(inner.size()));
         return read(inner[0]);
     }
-    std::pair<std::size_t, std::size_t> read_two(XmlElement& element) {
-        const auto inner = element.objects({"bsdf", "ref"});
-        if (inner.size() != 2) element.error("needs two bsdfs inside, not " + std::to_string(inner.size()));
-        const std::size_t first = read(inner[0]);
-        return {first, read(inner[1])};
-    }
 
     std::size_t read_two_sided(XmlElement& element) {
-        const auto inner = element.objects({"bsdf", "ref"});
+        const auto inner = element.objects("bsdf");
         if (inner.empty() || inner.size() > 2)
             element.error("needs one bsdf inside, for both sides, or two, not " + std::to_string(inner.size()));
         element.finish();
@@ -131,7 +198,7 @@ private:
     const XmlFile& file_;
     TextureReader& textures_;
     LibraryDescription& scene_;
-    std::map<std::ptrdiff_t, std::size_t> materials_;
+    std::map<pugi::xml_node, std::size_t> materials_;
     std::optional<std::size_t> grey_, black_, invisible_;
 };
 

@@ -2,7 +2,7 @@
 
 // Textures in Mitsuba's scene files.
 
-#include <lightswitch/load/xml_element.hpp>
+#include <lightswitch/load/xml_color.hpp>
 #include <lightswitch/scene/library.hpp>
 #include <lightswitch/texture/load_bitmap.hpp>
 
@@ -13,34 +13,35 @@
 
 namespace lightswitch::detail {
 
-/// Reads the textures of one scene file, each file and each `<texture>` once.
+/// Reads the textures of one scene file, each file and each `<texture>` once. In the place of one that cannot be read
+/// is middle grey.
 class TextureReader {
 public:
-    TextureReader(const XmlFile& file, std::filesystem::path folder) : file_(file), folder_(std::move(folder)) {}
+    explicit TextureReader(const XmlFile& file) : file_(file) {}
 
     /// Reads a `<texture>`, or the one that a `<ref>` stands for.
     Texture read(pugi::xml_node node) {
-        if (std::string_view(node.name()) == "ref") node = file_.target(node, "texture");
-        const auto known = textures_.find(node.offset_debug());
-        if (known != textures_.end()) return known->second;
-        XmlElement element(file_, node);
-        const Texture texture = element.type() == "bitmap" ? read_bitmap(element) : read_checkerboard(element);
-        element.finish();
-        if (const std::string problem = texture.problem(); !problem.empty()) element.error(problem);
-        return textures_.emplace(node.offset_debug(), texture).first->second;
+        return file_.log().attempt(
+            "it is middle grey", [&] { return read_or_throw(node); }, [] { return Texture(Rgb(0.5f)); });
     }
 
-    /// The `<texture>` (or `<ref>`) of that name, which must be there.
+    /// The `<texture>` (or `<ref>`) of that name, which must be there and whole.
     Texture texture(XmlElement& element, const std::string& name) {
         const auto node = element.texture(name);
         if (!node) element.error("needs a texture named " + quote(name));
-        return read(*node);
+        return read_or_throw(*node);
     }
-    /// The only `<texture>` inside, whatever its name.
-    Texture only_texture(XmlElement& element) {
-        const auto nodes = element.objects({"texture"});
+    /// The only `<texture>` inside, whatever its name, which must be whole. What a texture of type `scale` multiplies
+    /// it by goes into `scale`.
+    Texture only_texture(XmlElement& element, float& scale) {
+        const auto nodes = element.objects("texture");
         if (nodes.size() != 1) element.error("needs exactly one texture inside, not " + std::to_string(nodes.size()));
-        return read(nodes[0]);
+        XmlElement inner(file_, nodes[0]);
+        if (inner.type() != "scale") return read_or_throw(nodes[0]);
+        scale *= static_cast<float>(inner.number("scale", 1));
+        const Texture result = only_texture(inner, scale);
+        inner.finish();
+        return result;
     }
     /// A parameter that is a number or colour, or a texture. Without `otherwise` it must be there.
     Texture value_or_texture(XmlElement& element, const std::string& name, std::optional<float> otherwise = {}) {
@@ -80,25 +81,46 @@ private:
         return {.u = Vec3(m[0].x, m[1].x, m[3].x), .v = Vec3(m[0].y, m[1].y, m[3].y)};
     }
 
+    Texture read_or_throw(pugi::xml_node node) {
+        if (std::string_view(node.name()) == "ref") {
+            const pugi::xml_node meant = file_.target(node);
+            if (!meant)
+                fail(file_.origin(node), "there is no element with the id " + quote(node.attribute("id").value()));
+            if (std::string_view(meant.name()) != "texture")
+                fail(file_.origin(node),
+                     "refers to " + file_.origin(meant).element + ", but only a <texture> can be referred to");
+            node = meant;
+        }
+        const auto known = textures_.find(node);
+        if (known != textures_.end()) return known->second;
+        XmlElement element(file_, node);
+        const Texture texture = element.type() == "bitmap"  ? read_bitmap(element)
+                                : element.type() == "scale" ? read_scaled(element)
+                                                            : read_checkerboard(element);
+        element.finish();
+        if (const std::string problem = texture.problem(); !problem.empty()) element.error(problem);
+        return textures_.emplace(node, texture).first->second;
+    }
+
+    /// The texture of Mitsuba 0.6 that multiplies another one.
+    Texture read_scaled(XmlElement& element) {
+        float scale = 1;
+        const Texture result = only_texture(element, scale);
+        if (scale != 1) element.problem("scale", "only bump maps can be scaled", "it is 1");
+        return result;
+    }
+
     Texture read_bitmap(XmlElement& element) {
-        const std::string path = element.file_name(folder_).string();
-        const auto one_of = [&](const char* parameter, const char* otherwise, const auto& values) {
-            const std::string value = lower_case(element.text(parameter).value_or(otherwise));
-            const auto found = values.find(value);
-            if (found == values.end()) {
-                std::string known;
-                for (const auto& [text, meaning] : values) known += (known.empty() ? "" : ", ") + text;
-                fail(element.origin(parameter), quote(value) + " is not one of " + known);
-            }
-            return found->second;
-        };
+        const std::string path = element.file_name().string();
         static const std::map<std::string, TextureFilter> filters{{"bilinear", TextureFilter::bilinear},
                                                                   {"nearest", TextureFilter::nearest}};
         static const std::map<std::string, TextureWrap> wraps{
             {"repeat", TextureWrap::repeat}, {"mirror", TextureWrap::mirror}, {"clamp", TextureWrap::clamp}};
-        const TextureFilter filter = one_of("filter_type", "bilinear", filters);
-        const TextureWrap wrap = one_of("wrap_mode", "repeat", wraps);
+        const TextureFilter filter = element.one_of("filter_type", "bilinear", filters);
+        const TextureWrap wrap = element.one_of("wrap_mode", "repeat", wraps);
         const bool raw = element.boolean("raw", false);
+        element.boolean("accel", true);  // and what it is stored as in memory, which changes nothing either
+        element.text("format");
         auto& bitmap = bitmaps_[{path, raw, filter, wrap}];
         if (!bitmap)
             bitmap = at_place(element.origin(), [&] {
@@ -114,8 +136,7 @@ private:
     }
 
     const XmlFile& file_;
-    std::filesystem::path folder_;
-    std::map<std::ptrdiff_t, Texture> textures_;
+    std::map<pugi::xml_node, Texture> textures_;
     std::map<std::tuple<std::string, bool, TextureFilter, TextureWrap>, std::shared_ptr<const Bitmap>> bitmaps_;
 };
 

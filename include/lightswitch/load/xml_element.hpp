@@ -1,7 +1,7 @@
 #pragma once
 
 // An object in a scene file: its parameters, typed and each asked for by name, and the objects inside it. What nobody
-// asked for is an error, so that nothing in a file is ignored unseen.
+// asked for is a problem, so that nothing in a file is ignored unseen.
 
 #include <lightswitch/core/math.hpp>
 #include <lightswitch/load/spectrum.hpp>
@@ -10,21 +10,23 @@
 
 namespace lightswitch::detail {
 
-/// An object element, such as `<shape type="sphere">`. Functions that read a parameter throw `Error` when it has the
-/// wrong type or a malformed value.
+/// An object element, such as `<shape type="sphere">`. A number, colour or flag of the wrong type or with a malformed
+/// value is a problem, and as if it were not there; for other parameters functions throw `Error` then.
 class XmlElement {
 public:
-    /// Checks attributes and sorts the children; parameters given twice are an error.
+    /// Checks attributes and sorts the children; parameters given twice are a problem.
     XmlElement(const XmlFile& file, pugi::xml_node node);
 
     const XmlFile& file() const { return file_; }
+    ReadingLog& log() const { return file_.log(); }
     Origin origin() const { return file_.origin(node_); }
     std::string type() const { return node_.attribute("type").value(); }
     [[noreturn]] void error(const std::string& what) const { fail(origin(), what); }
-    /// The error for a plugin that is not supported.
-    [[noreturn]] void unknown_type(const std::string& known) const {
-        error("unknown type " + quote(type()) + "; known are " + known);
+    static std::string unknown(const std::string& type, const std::string& known) {
+        return "unknown type " + quote(type) + "; known are " + known;
     }
+    /// The error for a plugin that is not supported.
+    [[noreturn]] void unknown_type(const std::string& known) const { error(unknown(type(), known)); }
 
     bool has(const std::string& name) const { return parameters_.contains(name); }
     /// Whether there is an object of that name inside, such as a texture for a parameter.
@@ -37,70 +39,100 @@ public:
     }
     /// Place of a parameter that is there.
     Origin origin(const std::string& name) const { return file_.origin(parameters_.at(name)); }
+    /// Takes down what is wrong with that parameter, if it is there, or else with the element.
+    void problem(const std::string& name, const std::string& what, std::string instead) const {
+        log().problem(has(name) ? origin(name) : origin(), what, std::move(instead));
+    }
 
     std::optional<double> number(const std::string& name);
     double number(const std::string& name, double otherwise) { return number(name).value_or(otherwise); }
+    /// A number above 0, or `otherwise`.
+    double positive(const std::string& name, double otherwise, const std::string& advice = "");
     /// An integer between `lowest` and `highest`.
     std::optional<int> integer(const std::string& name, int lowest, int highest = std::numeric_limits<int>::max());
     bool boolean(const std::string& name, bool otherwise);
     std::optional<std::string> text(const std::string& name);
-    /// The file that the parameter "filename" names, which must be there, from that folder.
-    std::filesystem::path file_name(const std::filesystem::path& folder);
+    /// The file that the parameter "filename" names, which must be there.
+    std::filesystem::path file_name();
     std::optional<DVec3> vector(const std::string& name);
     std::optional<DMat4> transform(const std::string& name);
+    /// What a text means by `values`; one that is not among them is a problem, and as if it were not there.
+    template <class T>
+    T one_of(const std::string& name, const std::string& otherwise, const std::map<std::string, T>& values);
 
-    /// A colour as Mitsuba's RGB variants see it: `<rgb>`, one number, or a `<spectrum>` in any form.
+    /// A colour as Mitsuba's RGB variants see it: `<rgb>`, `<srgb>`, one number, or a `<spectrum>` in any form.
     Rgb color(const std::string& name, const Rgb& otherwise, SpectrumUse use = SpectrumUse::reflectance);
     Rgb color(const std::string& name, float otherwise, SpectrumUse use = SpectrumUse::reflectance) {
         return color(name, Rgb(otherwise), use);
     }
 
-    /// The `<texture>` inside that gives the parameter of that name, or the `<ref>` to one.
+    /// Whether it was written for Mitsuba 0.x.
+    bool is_old() const { return file_.is_old(node_); }
+
+    /// The `<texture>` inside that gives the parameter of that name, or the `<ref>` to one. May be asked for again.
     std::optional<pugi::xml_node> texture(const std::string& name);
 
-    /// The objects inside with one of these tags, once each.
-    std::vector<pugi::xml_node> objects(std::initializer_list<std::string_view> tags);
-    /// Throws for every parameter and object that was never asked for.
+    /// The objects inside with that tag, and those that references stand for, once each.
+    std::vector<pugi::xml_node> objects(std::string_view tag);
+    /// The only one of them, or nothing. Others are a problem.
+    std::optional<pugi::xml_node> object(std::string_view tag);
+    /// Takes every parameter and object that was never asked for as a problem.
     void finish() const;
+    /// Lets parameters pass that say nothing about the image.
+    void accept(std::initializer_list<const char*> names) { asked_.insert(names.begin(), names.end()); }
+    /// Those, whose names begin with this.
+    void accept_beginning(std::string_view prefix) {
+        for (const auto& [name, node] : parameters_)
+            if (name.starts_with(prefix)) asked_.insert(name);
+    }
+    /// Lets everything pass that is there.
+    void accept_rest() {
+        accept_beginning("");
+        objects_.clear();
+    }
 
 private:
+    void sort(pugi::xml_node child);
     /// The parameter's element if it is there; throws when its tag is none of `tags`.
     pugi::xml_node find(const std::string& name, std::initializer_list<std::string_view> tags);
-    /// The colour of a `<spectrum>` by value or from a file, or of a type.
-    static Rgb read_spectrum(const XmlFile& file, pugi::xml_node node, SpectrumUse use);
-    Rgb spectrum_of_type(SpectrumUse use);
 
     const XmlFile& file_;
     pugi::xml_node node_;
     std::map<std::string, pugi::xml_node> parameters_;
     std::vector<pugi::xml_node> objects_;
     std::set<std::string> asked_;
+    std::set<pugi::xml_node> read_textures_;
 };
 
 inline XmlElement::XmlElement(const XmlFile& file, pugi::xml_node node) : file_(file), node_(node) {
-    if (std::string_view(node.name()) == "scene") file.check_attributes(node, {"version"}, {"type", "id", "name"});
+    if (std::string_view(node.name()) == "scene") file.check_attributes(node, {}, {"version", "type", "id", "name"});
     else file.check_attributes(node, {"type"}, {"id", "name"});
+    for (const pugi::xml_node child : file.children(node))
+        file.log().attempt("it is left out", [&] { sort(child); });
+}
 
+inline void XmlElement::sort(pugi::xml_node child) {
     static const std::set<std::string_view> vectors{"point", "vector"},
-        values{"float", "integer", "boolean", "string", "rgb", "spectrum"},
-        objects{"bsdf", "shape", "emitter", "sensor", "film", "rfilter", "sampler", "integrator", "texture", "ref"};
-    for (const pugi::xml_node child : node.children()) {
-        const std::string_view tag = child.name();
-        if (child.type() != pugi::node_element || tag == "default" || tag == "alias") continue;
-        if (objects.contains(tag)) {
-            objects_.push_back(child);
-            continue;
-        }
-        const bool typed = tag == "spectrum" && child.attribute("type");
-        if (tag == "spectrum") file.check_attributes(child, {"name"}, {"value", "filename", "type", "id"});
-        else if (values.contains(tag)) file.check_attributes(child, {"name", "value"});
-        else if (vectors.contains(tag)) file.check_attributes(child, {"name"}, {"value", "x", "y", "z"});
-        else if (tag == "transform") file.check_attributes(child, {"name"});
-        else fail(file.origin(child), "elements of this kind are not supported here");
-        if (tag != "transform" && !typed) file.check_childless(child);
-        if (!parameters_.emplace(child.attribute("name").value(), child).second)
-            fail(file.origin(child), "the parameter is given twice");
-    }
+        values{"float", "integer", "boolean", "string"}, colors{"rgb", "srgb"},
+        objects{"bsdf",    "shape",      "emitter", "sensor", "film",  "rfilter",
+                "sampler", "integrator", "texture", "ref",    "medium"};
+    const std::string_view tag = child.name();
+    if (objects.contains(tag)) return objects_.push_back(child);
+    const bool typed = tag == "spectrum" && child.attribute("type");
+    if (tag == "spectrum")
+        file_.check_attributes(child, {"name"}, {"value", "filename", "type", "id", "intent"});
+    else if (tag == "blackbody") file_.check_attributes(child, {"name", "temperature"}, {"scale"});
+    else if (values.contains(tag)) file_.check_attributes(child, {"name", "value"});
+    else if (colors.contains(tag)) file_.check_attributes(child, {"name", "value"}, {"intent"});
+    else if (vectors.contains(tag)) file_.check_attributes(child, {"name"}, {"value", "x", "y", "z"});
+    else if (tag == "transform") file_.check_attributes(child, {"name"});
+    else fail(file_.origin(child), "elements of this kind are not supported here");
+    if (tag != "transform" && !typed) file_.check_childless(child);
+    const auto [first, is_new] = parameters_.emplace(child.attribute("name").value(), child);
+    // With the same value again nothing is in doubt.
+    const bool same = !is_new && tag == first->second.name() && child.attribute("value") &&
+                      std::string_view(child.attribute("value").value()) == first->second.attribute("value").value();
+    if (!is_new && !same) fail(file_.origin(child), "the parameter is given twice");
 }
 
 inline pugi::xml_node XmlElement::find(const std::string& name, std::initializer_list<std::string_view> tags) {
@@ -117,31 +149,57 @@ inline pugi::xml_node XmlElement::find(const std::string& name, std::initializer
 }
 
 inline std::optional<double> XmlElement::number(const std::string& name) {
-    const auto node = find(name, {"float", "integer"});
-    if (!node) return {};
-    return read_numbers(file_, node, "value", {1})[0];
+    return log().attempt(
+        "it is ignored",
+        [&]() -> std::optional<double> {
+            const auto node = find(name, {"float", "integer"});
+            if (!node) return {};
+            return read_numbers(file_, node, "value", {1})[0];
+        },
+        [] { return std::nullopt; });
+}
+
+inline double XmlElement::positive(const std::string& name, double otherwise, const std::string& advice) {
+    const double value = number(name, otherwise);
+    if (value > 0) return value;
+    problem(name, "must be above 0" + advice, "it is " + number_text(otherwise));
+    return otherwise;
 }
 
 inline std::optional<int> XmlElement::integer(const std::string& name, int lowest, int highest) {
-    const auto node = find(name, {"integer"});
-    if (!node) return {};
-    std::string_view text = node.attribute("value").value();
-    const std::string_view word = next_word(text);
-    const auto value = parse_integer(word);
-    if (!value || !next_word(text).empty())
-        fail(file_.origin(node), quote(node.attribute("value").value()) + " is not an integer");
-    if (*value < lowest || *value > highest)
-        fail(file_.origin(node),
-             std::to_string(*value) + " is not between " + std::to_string(lowest) + " and " + std::to_string(highest));
-    return static_cast<int>(*value);
+    return log().attempt(
+        "it is ignored",
+        [&]() -> std::optional<int> {
+            const auto node = find(name, {"integer", "float"});
+            if (!node) return {};
+            std::string_view text = node.attribute("value").value();
+            const std::string_view word = next_word(text);
+            auto value = parse_integer(word);
+            const auto real = parse_number(word);
+            if (std::string_view(node.name()) == "float" && real && std::abs(*real) < 1e15 && std::trunc(*real) == *real)
+                value = static_cast<std::int64_t>(*real);
+            if (!value || !next_word(text).empty())
+                fail(file_.origin(node), quote(node.attribute("value").value()) + " is not an integer");
+            if (*value < lowest || *value > highest)
+                fail(file_.origin(node), std::to_string(*value) + " is not between " + std::to_string(lowest) +
+                                             " and " + std::to_string(highest));
+            return static_cast<int>(*value);
+        },
+        [] { return std::nullopt; });
 }
 
 inline bool XmlElement::boolean(const std::string& name, bool otherwise) {
-    const auto node = find(name, {"boolean"});
-    if (!node) return otherwise;
-    const std::string value = lower_case(node.attribute("value").value());
-    if (value != "true" && value != "false") fail(file_.origin(node), quote(value) + " is neither true nor false");
-    return value == "true";
+    return log().attempt(
+        "it is ignored",
+        [&] {
+            const auto node = find(name, {"boolean"});
+            if (!node) return otherwise;
+            const std::string value = lower_case(node.attribute("value").value());
+            if (value != "true" && value != "false")
+                fail(file_.origin(node), quote(value) + " is neither true nor false");
+            return value == "true";
+        },
+        [&] { return otherwise; });
 }
 
 inline std::optional<std::string> XmlElement::text(const std::string& name) {
@@ -150,10 +208,10 @@ inline std::optional<std::string> XmlElement::text(const std::string& name) {
     return node.attribute("value").value();
 }
 
-inline std::filesystem::path XmlElement::file_name(const std::filesystem::path& folder) {
+inline std::filesystem::path XmlElement::file_name() {
     const auto name = text("filename");
     if (!name) error("the parameter \"filename\" is missing");
-    return folder / *name;
+    return file_.locate(parameters_.at("filename"), *name);
 }
 
 inline std::optional<DVec3> XmlElement::vector(const std::string& name) {
@@ -168,59 +226,15 @@ inline std::optional<DMat4> XmlElement::transform(const std::string& name) {
     return read_transform(file_, node);
 }
 
-inline Rgb XmlElement::color(const std::string& name, const Rgb& otherwise, SpectrumUse use) {
-    const auto node = find(name, {"rgb", "float", "integer", "spectrum"});
-    if (!node) return otherwise;
-    const std::string_view tag = node.name();
-    if (tag == "spectrum") return read_spectrum(file_, node, use);
-    const auto numbers =
-        tag == "rgb" ? read_numbers(file_, node, "value", {1, 3}) : read_numbers(file_, node, "value", {1});
-    const Rgb result(numbers.size() == 1 ? DVec3(numbers[0]) : DVec3(numbers[0], numbers[1], numbers[2]));
-    if (!lightswitch::is_finite(result)) fail(file_.origin(node), "the colour is too large");
-    return result;
-}
-
-inline Rgb XmlElement::read_spectrum(const XmlFile& file, pugi::xml_node node, SpectrumUse use) {
-    const Origin where = file.origin(node);
-    if ((node.attribute("value") ? 1 : 0) + (node.attribute("filename") ? 1 : 0) + (node.attribute("type") ? 1 : 0) !=
-        1)
-        fail(where, "needs one of the attributes \"value\", \"filename\" and \"type\"");
-    if (node.attribute("type")) return XmlElement(file, node).spectrum_of_type(use);
-    if (node.attribute("value"))
-        return spectrum_to_rgb(parse_spectrum(node.attribute("value").value(), where), use, where);
-    const auto folder = std::filesystem::path(where.file).parent_path();
-    const Spectrum spectrum =
-        at_place(where, [&] { return load_spectrum(folder / node.attribute("filename").value()); });
-    return spectrum_to_rgb(spectrum, use, where);
-}
-
-inline Rgb XmlElement::spectrum_of_type(SpectrumUse use) {
-    const std::string kind = type();
-    Rgb result;
-    if (kind == "uniform") {
-        result = Rgb(static_cast<float>(number("value", 1)));
-    } else if (kind == "d65") {
-        result = color("color", 1) * static_cast<float>(number("scale", 1));
-    } else if (kind == "srgb") {
-        result = color("color", 1);
-    } else if (kind == "regular") {
-        const double lowest = number("wavelength_min", cie_first), highest = number("wavelength_max", cie_last);
-        result = spectrum_to_rgb(parse_regular_spectrum(lowest, highest, text("values").value_or(""), origin()), use,
-                                 origin());
-    } else if (kind == "irregular") {
-        const std::string wavelengths = text("wavelengths").value_or("");
-        result = spectrum_to_rgb(parse_irregular_spectrum(wavelengths, text("values").value_or(""), origin()), use,
-                                 origin());
-    } else if (kind == "blackbody") {
-        const auto temperature = number("temperature");
-        if (!temperature) error("the parameter \"temperature\" is missing");
-        const double lowest = number("wavelength_min", cie_first);
-        result = blackbody_to_rgb(*temperature, lowest, number("wavelength_max", cie_last), origin());
-    } else {
-        unknown_type("uniform, d65, srgb, regular, irregular and blackbody");
-    }
-    finish();
-    return result;
+template <class T>
+T XmlElement::one_of(const std::string& name, const std::string& otherwise, const std::map<std::string, T>& values) {
+    const std::string value = lower_case(text(name).value_or(otherwise));
+    const auto found = values.find(value);
+    if (found != values.end()) return found->second;
+    std::string known;
+    for (const auto& [text, meaning] : values) known += (known.empty() ? "" : ", ") + text;
+    problem(name, quote(value) + " is not one of " + known, "it is " + quote(otherwise));
+    return values.at(otherwise);
 }
 
 inline std::optional<pugi::xml_node> XmlElement::texture(const std::string& name) {
@@ -231,19 +245,31 @@ inline std::optional<pugi::xml_node> XmlElement::texture(const std::string& name
     });
     if (found == objects_.end()) return {};
     const pugi::xml_node node = *found;
-    objects_.erase(found);
-    if (parameters_.contains(name)) fail(file_.origin(node), "the parameter is given twice");
+    read_textures_.insert(node);
+    if (parameters_.contains(name))
+        log().problem(file_.origin(node), "the parameter is given twice", "the texture counts");
     return node;
 }
 
-inline std::vector<pugi::xml_node> XmlElement::objects(std::initializer_list<std::string_view> tags) {
+inline std::vector<pugi::xml_node> XmlElement::objects(std::string_view tag) {
     std::vector<pugi::xml_node> result;
-    const auto wanted = [&](pugi::xml_node node) {
-        return std::find(tags.begin(), tags.end(), node.name()) != tags.end();
-    };
-    std::copy_if(objects_.begin(), objects_.end(), std::back_inserter(result), wanted);
-    std::erase_if(objects_, wanted);
+    std::erase_if(objects_, [&](pugi::xml_node node) {
+        if (read_textures_.contains(node)) return false;
+        const bool reference = std::string_view(node.name()) == "ref";
+        const pugi::xml_node meant = reference ? file_.target(node) : node;
+        if (!meant || meant.name() != tag) return false;
+        result.push_back(meant);
+        return true;
+    });
     return result;
+}
+
+inline std::optional<pugi::xml_node> XmlElement::object(std::string_view tag) {
+    const auto found = objects(tag);
+    for (std::size_t i = 1; i < found.size(); ++i)
+        log().problem(file_.origin(found[i]), "is the second one in " + origin().element, "it is left out");
+    if (found.empty()) return {};
+    return found[0];
 }
 
 inline void XmlElement::finish() const {
@@ -251,10 +277,21 @@ inline void XmlElement::finish() const {
         if (asked_.contains(name)) continue;
         std::string known;
         for (const std::string& other : asked_) known += (known.empty() ? "; known are " : ", ") + other;
-        fail({file_.origin(node).file, file_.origin(node).line, origin().element},
-             "unknown parameter " + quote(name) + known);
+        log().problem({file_.origin(node).file, file_.origin(node).line, origin().element},
+                      "unknown parameter " + quote(name) + known, "it is ignored");
     }
-    if (!objects_.empty()) fail(file_.origin(objects_.front()), "does not belong into " + origin().element);
+    for (const pugi::xml_node node : objects_) {
+        if (read_textures_.contains(node)) continue;
+        const bool reference = std::string_view(node.name()) == "ref";
+        const pugi::xml_node meant = reference ? file_.target(node) : pugi::xml_node();
+        const std::string what =
+            !reference ? ""
+            : meant    ? "refers to " + file_.origin(meant).element + ", which "
+                       : "there is no element with the id " + quote(node.attribute("id").value());
+        log().problem(file_.origin(node),
+                      reference && !meant ? what : what + "does not belong into " + origin().element,
+                      "it is left out");
+    }
 }
 
 }  // namespace lightswitch::detail

@@ -84,9 +84,12 @@ inline DMat4 read_transform_step(const XmlFile& file, pugi::xml_node node) {
         file.check_attributes(node, {"angle"}, {"value", "x", "y", "z"});
         const DVec3 axis = read_vector(file, node, 0);
         const double length = glm::length(axis);
-        if (!(std::abs(length - 1) < 1e-3))  // Mitsuba would use it as it is, which is not a rotation
-            fail(file.origin(node), "the rotation axis has length " + std::to_string(length) + ": give a unit vector");
-        result = rotation(axis / length, read_numbers(file, node, "angle", {1})[0]);
+        // Mitsuba 0.6 takes it for a direction; 3 would use it as it is, which is not a rotation.
+        if (!(length > 0) || (!(std::abs(length - 1) < 1e-3) && !file.is_old(node)))
+            file.log().problem(file.origin(node),
+                               "the rotation axis has length " + std::to_string(length) + ": give a unit vector",
+                               length > 0 ? "its direction counts" : "it is left out");
+        if (length > 0) result = rotation(axis / length, read_numbers(file, node, "angle", {1})[0]);
     } else if (tag == "lookat") {
         file.check_attributes(node, {"origin", "target"}, {"up"});
         const auto vector = [&](const char* name) {
@@ -96,13 +99,15 @@ inline DMat4 read_transform_step(const XmlFile& file, pugi::xml_node node) {
         const DVec3 eye = vector("origin"), target = vector("target");
         DVec3 up = node.attribute("up") ? vector("up") : DVec3(0);
         if (up == DVec3(0) && target != eye) up = any_tangent(glm::normalize(target - eye));
+        if (!(glm::length(target - eye) > 0))
+            fail(file.origin(node), "\"target\" is at \"origin\": move one of them");
         try {
             result = CameraDescription::look_at(eye, target, up);
         } catch (const Error&) {  // which speaks of a camera
-            fail(file.origin(node),
-                 glm::length(target - eye) > 0
-                     ? "\"up\" is parallel to the way from \"origin\" to \"target\": give another one"
-                     : "\"target\" is at \"origin\": move one of them");
+            file.log().problem(
+                file.origin(node),
+                "\"up\" is parallel to the way from \"origin\" to \"target\": give another one", "another one is used");
+            result = CameraDescription::look_at(eye, target, any_tangent(glm::normalize(target - eye)));
         }
     } else if (tag == "matrix") {
         file.check_attributes(node, {"value"});
@@ -121,8 +126,7 @@ inline DMat4 read_transform_step(const XmlFile& file, pugi::xml_node node) {
 
 inline DMat4 read_transform(const XmlFile& file, pugi::xml_node node) {
     DMat4 result(1);
-    for (const pugi::xml_node child : node.children())
-        if (child.type() == pugi::node_element) result = read_transform_step(file, child) * result;
+    for (const pugi::xml_node child : file.children(node)) result = read_transform_step(file, child) * result;
     const double determinant = linear_determinant(result);
     if (determinant == 0 || !is_finite(determinant))
         fail(file.origin(node), "the transform cannot be inverted: it has a scale of 0, or overflows");

@@ -64,6 +64,7 @@ struct SceneDescription {
     std::optional<int> max_depth;  ///< what the file asks of a method, if it does
     std::optional<int> rr_depth;
     std::optional<int> samples;      ///< samples per pixel that the file asks for
+    std::optional<float> exposure;   ///< stops, of pictures, that the file asks for
     std::vector<std::string> files;  ///< what was read: the scene's file and those of its meshes
 
     [[gnu::noinline]] std::size_t add(Material bsdf, Origin origin = {}) {

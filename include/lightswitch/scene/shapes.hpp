@@ -30,6 +30,9 @@ Mesh cube(const DMat4& to_world = DMat4(1));
 /// The unit disk in z = 0 whose front looks along +z, under `to_world`: a fan of 256 triangles with the area of the
 /// disk. Texture coordinates are the distance from its centre and the angle, to 1/512 of a turn.
 Mesh disk(const DMat4& to_world = DMat4(1));
+/// The side, outwards, of the cylinder of radius 1 around z from 0 to 1, under `to_world`: 256 flat sides with the area of
+/// the round one and its normals. Texture coordinates are the angle and the height.
+Mesh cylinder(const DMat4& to_world = DMat4(1));
 /// A flat four-sided polygon with corners counter-clockwise as seen from the front, and texture coordinates from (0, 0)
 /// at the first one to (1, 1) at the third.
 Mesh quad(const DVec3& a, const DVec3& b, const DVec3& c, const DVec3& d);
@@ -85,6 +88,27 @@ inline Mesh disk(const DMat4& to_world) {
         const float v = static_cast<float>(i) / sides, next = static_cast<float>(i + 1) / sides;
         mesh.uvs.insert(mesh.uvs.end(), {{0, (v + next) / 2}, {1, v}, {1, next}});
         mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    }
+    return mesh.transformed(to_world);
+}
+
+inline Mesh cylinder(const DMat4& to_world) {
+    constexpr std::uint32_t sides = 256;
+    constexpr double step = 2 * std::numbers::pi / sides;
+    // A prism of circumradius r has the girth 2 * sides * r * sin(step / 2).
+    const double radius = step / 2 / std::sin(step / 2);
+    Mesh mesh;
+    for (std::uint32_t i = 0; i <= sides; ++i) {
+        const DVec3 outward(std::cos(i * step), std::sin(i * step), 0);
+        for (const double height : {0.0, 1.0}) {
+            mesh.positions.push_back(radius * outward + DVec3(0, 0, height));
+            mesh.normals.push_back(outward);
+            mesh.uvs.emplace_back(static_cast<float>(i) / sides, static_cast<float>(height));
+        }
+        if (i == sides) break;
+        const std::uint32_t low = 2 * i, high = low + 1, next_low = low + 2, next_high = low + 3;
+        mesh.triangles.push_back({low, next_low, next_high});
+        mesh.triangles.push_back({low, next_high, high});
     }
     return mesh.transformed(to_world);
 }
