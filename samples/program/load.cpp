@@ -1,6 +1,7 @@
 #include "load.hpp"
 
 #include "messages.hpp"
+#include "scene_files.hpp"
 #include "text.hpp"
 
 #include <lightswitch/load/mitsuba.hpp>
@@ -27,23 +28,28 @@ LibraryDescription load_file(const SceneOptions& options, Notices& notices, Prob
                                            .problems = &problems});
     } catch (const UnsupportedScene& error) {
         const std::size_t count = error.problems().size();
-        throw Error(fmt::format("{} ({}: \"lightswitch info\" lists {}, --lenient goes on with stand-ins)", error.what(),
-                                count == 1 ? "the only thing that is not supported"
-                                           : fmt::format("{} things are not supported", count),
-                                count == 1 ? "it" : "them"));
+        throw Error(fmt::format(
+            "{} ({}: \"lightswitch info\" lists {}, --lenient goes on with stand-ins)", error.what(),
+            count == 1 ? "the only thing that is not supported" : fmt::format("{} things are not supported", count),
+            count == 1 ? "it" : "them"));
     }
 }
 
 LibraryDescription describe(const SceneOptions& options, Notices& notices, Problems& problems) {
     const std::string& scene = options.scene;
-    if (scene.size() >= 4 && scene.ends_with(".xml")) return load_file(options, notices, problems);
+    if (is_mitsuba_file(scene)) return load_file(options, notices, problems);
+    if (is_scene_file(scene)) {
+        if (!options.defines.empty()) throw Error("--define: only Mitsuba scenes have parameters");
+        if (!options.sensor.empty()) throw Error("--sensor: only Mitsuba scenes have cameras to choose from");
+        return load_other_file(scene, notices);
+    }
     const auto stock = stock::describe(scene);
     if (!stock) {
         std::error_code ignored;
         if (std::filesystem::exists(scene, ignored))
-            throw Error(fmt::format("{}: is not a scene: scene files are Mitsuba 3 XML and end in .xml", scene));
-        throw Error(fmt::format("there is no scene \"{}\"{}; a scene is a file that ends in .xml, or one of {}", scene,
-                                suggestion(scene, stock::names), list(stock::names)));
+            throw Error(fmt::format("{}: is not a scene: scene files end in {}", scene, scene_endings));
+        throw Error(fmt::format("there is no scene \"{}\"{}; a scene is a file that ends in {}, or one of {}", scene,
+                                suggestion(scene, stock::names), scene_endings, list(stock::names)));
     }
     if (!options.defines.empty()) throw Error("--define: the stock scenes have no parameters");
     if (!options.sensor.empty()) throw Error("--sensor: the stock scenes have one camera each");

@@ -2,6 +2,7 @@
 
 #include "messages.hpp"
 #include "options.hpp"
+#include "scene_files.hpp"
 #include "text.hpp"
 
 #include <lightswitch/embree/api.hpp>
@@ -159,8 +160,8 @@ int run_command(int argc, char** argv) {
                                 : &command == &strategies_command ? strategies_options.scene
                                                                   : render_options.scene;
     if (scene.scene.empty())
-        throw Error(fmt::format("{}: name a scene: a file that ends in .xml, or one of {}", command.get_name(),
-                                list(stock::names)));
+        throw Error(fmt::format("{}: name a scene: a file that ends in {}, or one of {}", command.get_name(),
+                                scene_endings, list(stock::names)));
     if (&command == &info_command) return info(info_options);
     return &command == &strategies_command ? strategies(strategies_options) : render(render_options);
 }

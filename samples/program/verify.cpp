@@ -6,6 +6,7 @@
 #include "outputs.hpp"
 #include "progress.hpp"
 #include "run.hpp"
+#include "scene_files.hpp"
 #include "text.hpp"
 
 #include <lightswitch/film/image_io.hpp>
@@ -38,7 +39,7 @@ std::vector<std::string> expand(const std::vector<std::string>& patterns, std::s
         const int status = glob(pattern.c_str(), 0, nullptr, &found);
         for (std::size_t i = 0; status == 0 && i < found.gl_pathc; ++i) files.emplace_back(found.gl_pathv[i]);
         globfree(&found);
-        const bool scene = pattern.ends_with(".xml") ||
+        const bool scene = is_scene_file(pattern) ||
                            std::find(stock::names.begin(), stock::names.end(), pattern) != stock::names.end();
         if (status != 0)
             throw Error(fmt::format("{}: no file matches \"{}\"{}", option, pattern,
@@ -169,8 +170,8 @@ Contest make_contest(const VerifyCommand& command, const std::stop_token& stop) 
     }
     if (command.scene.scene.empty())
         throw Error(fmt::format(
-            "verify: name a scene (a file that ends in .xml, or one of {}), or files with --images and --against",
-            list(stock::names)));
+            "verify: name a scene (a file that ends in {}, or one of {}), or files with --images and --against",
+            scene_endings, list(stock::names)));
     load(contest, command, size);
     const SceneSummary& summary = contest.loaded->summary;
     contest.files.insert(contest.files.end(), summary.files.begin(), summary.files.end());

@@ -55,7 +55,7 @@ TEST_CASE("a command that is missing, unknown or misspelt") {
 
 TEST_CASE("render: scenes and methods that do not exist") {
     const Workspace workspace;
-    workspace.write("mesh.obj", "v 0 0 0\n");
+    workspace.write("mesh.txt", "v 0 0 0\n");
     workspace.write("broken.xml", "<scene version=\"3.0.0\">\n  <sensor type=\"fisheye\"/>\n</scene>\n");
     check_refused(
         workspace,
@@ -63,7 +63,7 @@ TEST_CASE("render: scenes and methods that do not exist") {
             {{"render"}, "name a scene"},
             {{"render", "cornel-box", "-o", "x.png"}, "did you mean \"cornell-box\"?"},
             {{"render", "missing.xml", "-o", "x.png"}, "missing.xml: no such file"},
-            {{"render", "mesh.obj", "-o", "x.png"}, "scene files are Mitsuba 3 XML"},
+            {{"render", "mesh.txt", "-o", "x.png"}, "scene files end in .xml (Mitsuba)"},
             {{"render", "broken.xml", "-o", "x.png"}, "broken.xml:2: "},
             {render({"--method", "pathnee"}), "did you mean \"path-nee\"?; known are silhouette, phong, path"},
             {render({"--method", "radiosity"}), "no method \"radiosity\"; known are silhouette"},

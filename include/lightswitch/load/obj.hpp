@@ -78,8 +78,8 @@ public:
 private:
     // --- statements as nearly all are written: read fast, and otherwise left alone
 
-    /// Where the line at `text` ends if it is a `v`, `vn`, `vt` or `f` without anything special, which it then takes in;
-    /// otherwise null, and `statement` has the word.
+    /// Where the line at `text` ends if it is a `v`, `vn`, `vt` or `f` without anything special, which it then takes
+    /// in; otherwise null, and `statement` has the word.
     const char* usual_statement(const char* text) {
         if (text[0] == 'f') return is_blank(text[1]) ? usual_face(text + 2) : nullptr;
         if (text[0] != 'v') return nullptr;

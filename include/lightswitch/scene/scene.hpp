@@ -122,7 +122,8 @@ public:
             });
     }
 
-    /// Whether the scene has a material some lobe of which is a Dirac distribution: a mirror, clear glass, smooth plastic.
+    /// Whether the scene has a material some lobe of which is a Dirac distribution: a mirror, clear glass, smooth
+    /// plastic.
     bool has_specular() const {
         const auto any = [](const auto& list) {
             return std::any_of(list.begin(), list.end(), [](const auto& bsdf) { return has_dirac_lobe(bsdf); });
