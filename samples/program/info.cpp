@@ -82,8 +82,8 @@ int info(const SceneOptions& options) {
                                        count_text(statistics.triangles, "triangle", "triangles"),
                                        count_text(statistics.spheres, "sphere", "spheres")));
             if (statistics.instances > 0)
-                line("instances", count_text(statistics.instances, "instance of groups of them",
-                                             "instances of groups of them"));
+                line("instances",
+                     count_text(statistics.instances, "instance of groups of them", "instances of groups of them"));
             if (statistics.robust) line("intersection", "watertight (asked for, or needed by needle-like triangles)");
             if (statistics.degenerate_triangles > 0)
                 line("dropped",

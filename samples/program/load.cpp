@@ -27,10 +27,10 @@ LibraryDescription load_file(const SceneOptions& options, Notices& notices, Prob
                                            .problems = &problems});
     } catch (const UnsupportedScene& error) {
         const std::size_t count = error.problems().size();
-        throw Error(fmt::format("{} ({}: \"lightswitch info\" lists {}, --lenient goes on with stand-ins)", error.what(),
-                                count == 1 ? "the only thing that is not supported"
-                                           : fmt::format("{} things are not supported", count),
-                                count == 1 ? "it" : "them"));
+        throw Error(fmt::format(
+            "{} ({}: \"lightswitch info\" lists {}, --lenient goes on with stand-ins)", error.what(),
+            count == 1 ? "the only thing that is not supported" : fmt::format("{} things are not supported", count),
+            count == 1 ? "it" : "them"));
     }
 }
 

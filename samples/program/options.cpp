@@ -103,9 +103,10 @@ void add_scene_options(CLI::App& app, SceneOptions& options) {
         "where the scene's files are looked for besides; may be repeated");
     add_name(app, "--sensor", "ID", options.sensor,
              "which of the scene's cameras: its id, or its number from 0\n(default: the first)");
-    app.add_flag("--lenient", options.lenient,
-                 "stand-ins for what the scene file asks for and is not supported,\neach with a warning; \"info\" lists "
-                 "them");
+    app.add_flag(
+        "--lenient", options.lenient,
+        "stand-ins for what the scene file asks for and is not supported,\neach with a warning; \"info\" lists "
+        "them");
     add_value(
         app, "--size", "WxH", [&](const std::string& text) { options.size = parse_size(text); },
         "image size in pixels, instead of the scene's");
@@ -159,7 +160,8 @@ void add_render(CLI::App& app, RenderOptions& options) {
             if (!options.auto_exposure)
                 options.exposure = parse_float("--exposure", text, std::numeric_limits<double>::lowest(), false);
         },
-        "brightness of .png: radiance times 2^STOPS, or auto: what the\nimage shows on average is a middle grey (default: "
+        "brightness of .png: radiance times 2^STOPS, or auto: what the\nimage shows on average is a middle grey "
+        "(default: "
         "what the scene\nasks for, or auto)");
     add_name(app, "--stats", "FILE.json", options.stats, "write the render's numbers as JSON; - is standard output");
     app.add_flag("-q,--quiet", options.quiet, "no progress, no notices on mesh files, no summary");
@@ -181,7 +183,8 @@ void add_render(CLI::App& app, RenderOptions& options) {
         "  lightswitch render cornell-box --spp 16 --stats - --quiet\n\n"
         "Keys of --stats: method, kind, scene, scene_type, width, height, samples_per_pixel, seconds (rendering\n"
         "only), rays, shadow_rays, rays_per_second, samples_per_second, threads, seed, sampler, max_depth,\n"
-        "rr_depth, stand_ins, mean, estimated_error, non_finite, first_non_finite, splats, paths, triangles, spheres, lights,\n"
+        "rr_depth, stand_ins, mean, estimated_error, non_finite, first_non_finite, splats, paths, triangles, spheres, "
+        "lights,\n"
         "build_seconds, embree_bytes, scene_bytes, camera, embree_version, lightswitch_version, cancelled.\n"
         "Methods add their settings (initial_radius_pixels, alpha, paths_per_pixel, final_gather, max_chains,\n"
         "bootstrap, large_steps, refine) and what they counted, in the last iteration (photons, photon_map_bytes,\n"

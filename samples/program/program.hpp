@@ -31,7 +31,7 @@ struct SceneOptions {
     std::vector<std::filesystem::path> search_paths;  ///< where files are that are not beside the scene
     std::string sensor;                               ///< id or number; empty: the first one
     bool lenient = false;                             ///< stand-ins for what is not supported
-    std::optional<Size> size;      ///< instead of what the scene says
+    std::optional<Size> size;                         ///< instead of what the scene says
     int shrink_to = 0;             ///< where `size` is not given, the longest side in pixels; 0: as the scene says
     std::optional<Filter> filter;  ///< instead of what the scene says
     BuildOptions build;

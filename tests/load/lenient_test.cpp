@@ -17,11 +17,10 @@ Read lenient(const std::string& text, const std::string& version = "3.0.0") {
     const Folder folder;
     folder.write("triangle.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     folder.write("broken.obj", "v 0 0 0\nv 1 0 x\n");
-    const auto path = folder.write("room.xml", "<scene version=\"" + version + "\"><sensor type=\"perspective\"/>\n" +
-                                                   text + "</scene>");
+    const auto path = folder.write(
+        "room.xml", "<scene version=\"" + version + "\"><sensor type=\"perspective\"/>\n" + text + "</scene>");
     Read result;
-    result.scene =
-        load_mitsuba(path, MitsubaOptions{.strictness = Strictness::lenient, .problems = &result.problems});
+    result.scene = load_mitsuba(path, MitsubaOptions{.strictness = Strictness::lenient, .problems = &result.problems});
     CHECK_NOTHROW(detail::check(result.scene));
     for (const Problem& problem : result.problems) {
         CHECK(contains(problem.text, "room.xml"));
@@ -73,8 +72,8 @@ TEST_CASE("a strict reading tells all problems of a file, in the order of readin
 TEST_CASE("surface models that are not known are the one inside, or diffuse") {
     const std::string inside = "the bsdf inside takes its place", diffuse = "it is diffuse";
     CHECK(std::get<Lambert>(material("<bsdf type=\"hair\"/>", diffuse).bsdf).reflectance == Rgb(0.5f));
-    CHECK(std::get<Lambert>(material("<bsdf type=\"hk\"><rgb name=\"reflectance\" value=\"0.1 0.2 0.3\"/></bsdf>", diffuse)
-                                .bsdf)
+    CHECK(std::get<Lambert>(
+              material("<bsdf type=\"hk\"><rgb name=\"reflectance\" value=\"0.1 0.2 0.3\"/></bsdf>", diffuse).bsdf)
               .reflectance == Rgb(0.1f, 0.2f, 0.3f));
     for (const char* type : {"coating", "roughcoating", "sssbrdf"})
         CHECK(std::holds_alternative<Conductor>(
@@ -106,10 +105,10 @@ TEST_CASE("layers that cannot be are left out") {
 }
 
 TEST_CASE("values out of range are the nearest, or the default") {
-    CHECK(std::get<Lambert>(material("<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"1.5 0.5 0.5\"/></bsdf>",
-                                     "it is 1")
-                                .bsdf)
-              .reflectance == Rgb(1, 0.5f, 0.5f));
+    CHECK(
+        std::get<Lambert>(
+            material("<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"1.5 0.5 0.5\"/></bsdf>", "it is 1").bsdf)
+            .reflectance == Rgb(1, 0.5f, 0.5f));
     CHECK(std::get<RoughConductor>(
               material("<bsdf type=\"roughconductor\"><float name=\"alpha\" value=\"0\"/></bsdf>", "it is 0.0001").bsdf)
               .alpha_u == 1e-4f);
@@ -120,25 +119,28 @@ TEST_CASE("values out of range are the nearest, or the default") {
                                        "it reflects everything there")
                                   .bsdf)
               .k == Rgb(1));
-    CHECK(std::get<RoughConductor>(
-              material("<bsdf type=\"roughconductor\"><float name=\"alpha\" value=\"x\"/></bsdf>", "it is ignored").bsdf)
-              .alpha_u == 0.1f);
+    CHECK(
+        std::get<RoughConductor>(
+            material("<bsdf type=\"roughconductor\"><float name=\"alpha\" value=\"x\"/></bsdf>", "it is ignored").bsdf)
+            .alpha_u == 0.1f);
     CHECK(std::get<Dielectric>(
               material("<bsdf type=\"dielectric\"><string name=\"int_ior\" value=\"jelly\"/></bsdf>", "it is \"bk7\"")
                   .bsdf)
               .eta > 1.5f);
     const auto phong = std::get<Textured<ModifiedPhong>>(
-        material("<bsdf type=\"phong\"><texture type=\"checkerboard\" name=\"diffuse_reflectance\"><rgb name=\"color0\" "
-                 "value=\"0.9\"/></texture><rgb name=\"specular_reflectance\" value=\"0.4\"/></bsdf>",
-                 "its lobe is darkened")
+        material(
+            "<bsdf type=\"phong\"><texture type=\"checkerboard\" name=\"diffuse_reflectance\"><rgb name=\"color0\" "
+            "value=\"0.9\"/></texture><rgb name=\"specular_reflectance\" value=\"0.4\"/></bsdf>",
+            "its lobe is darkened")
             .bsdf);
     CHECK(phong.problem().empty());
 }
 
 TEST_CASE("textures that are not known or not there are middle grey") {
-    for (const char* texture : {"<texture name=\"reflectance\" type=\"wood\"/>", "<ref name=\"reflectance\" id=\"none\"/>",
-                                "<texture name=\"reflectance\" type=\"bitmap\"><string name=\"filename\" "
-                                "value=\"no.png\"/></texture>"}) {
+    for (const char* texture :
+         {"<texture name=\"reflectance\" type=\"wood\"/>", "<ref name=\"reflectance\" id=\"none\"/>",
+          "<texture name=\"reflectance\" type=\"bitmap\"><string name=\"filename\" "
+          "value=\"no.png\"/></texture>"}) {
         const auto read = material("<bsdf type=\"diffuse\">" + std::string(texture) + "</bsdf>", "it is middle grey");
         CHECK(std::get<Textured<Lambert>>(read.bsdf).at({Vec2(0.3f), SurfacePoint{}}).reflectance == Rgb(0.5f));
     }
@@ -185,10 +187,10 @@ TEST_CASE("cameras, films and filters that are not known are the usual ones") {
         "room.xml",
         "<scene version=\"3.0.0\"><sensor type=\"fisheye\"><float name=\"fov\" value=\"30\"/><transform "
         "name=\"to_world\"><scale value=\"3\"/><translate x=\"1\"/></transform><film type=\"specfilm\"><integer "
-        "name=\"width\" value=\"64\"/><integer name=\"height\" value=\"-2\"/><rfilter type=\"windowed\"/></film></sensor>"
+        "name=\"width\" value=\"64\"/><integer name=\"height\" value=\"-2\"/><rfilter "
+        "type=\"windowed\"/></film></sensor>"
         "</scene>");
-    const auto scene =
-        load_mitsuba(path, MitsubaOptions{.strictness = Strictness::lenient, .problems = &problems});
+    const auto scene = load_mitsuba(path, MitsubaOptions{.strictness = Strictness::lenient, .problems = &problems});
     CHECK(scene.camera.fov == 30);
     CHECK(scene.camera.to_world == DMat4{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {1, 0, 0, 1}});
     CHECK(scene.film.width == 64);
@@ -204,7 +206,8 @@ TEST_CASE("what is not understood in the file itself is passed over") {
     const Read read = lenient(
         "words <bsdf type=\"diffuse\" id=\"a\" colour=\"1\"/><bsdf type=\"conductor\" id=\"a\"/><default name=\"\" "
         "value=\"1\"/><alias id=\"nothing\" as=\"b\"/><include filename=\"none.xml\"/><path value=\"none\"/>"
-        "<shape type=\"cube\"><ref id=\"a\"/><ref id=\"none\"/><fog density=\"1\"/></shape><float name=\"x\" value=\"1\"/>",
+        "<shape type=\"cube\"><ref id=\"a\"/><ref id=\"none\"/><fog density=\"1\"/></shape><float name=\"x\" "
+        "value=\"1\"/>",
         "7");
     CHECK(std::holds_alternative<Lambert>(read.scene.materials[read.scene.shapes.at(0).material].bsdf));
     CHECK(read.problems.size() == 11);
@@ -216,8 +219,8 @@ TEST_CASE("what is not understood in the file itself is passed over") {
 }
 
 TEST_CASE("a lenient reading fails only where there is no scene") {
-    for (const char* text : {"", "<scene version=\"3.0.0\">", "<bsdf type=\"diffuse\"/>",
-                             "<!DOCTYPE a><scene version=\"3.0.0\"/>"}) {
+    for (const char* text :
+         {"", "<scene version=\"3.0.0\">", "<bsdf type=\"diffuse\"/>", "<!DOCTYPE a><scene version=\"3.0.0\"/>"}) {
         const Folder folder;
         const auto path = folder.write("room.xml", text);
         CHECK_THROWS_AS(load_mitsuba(path, MitsubaOptions{.strictness = Strictness::lenient}), Error);

@@ -123,7 +123,8 @@ TEST_CASE("what a scene file cannot say is refused with file, line and element")
         {"<integrator type=\"path\"><float name=\"max_depth\" value=\"5.5\"/></integrator>",
          "\"5.5\" is not an integer"},
         {"<integrator type=\"path\"><string name=\"max_depth\" value=\"5\"/></integrator>",
-         "room.xml:3: <string name=\"max_depth\">: has the wrong type: \"max_depth\" of <integrator type=\"path\"> must "
+         "room.xml:3: <string name=\"max_depth\">: has the wrong type: \"max_depth\" of <integrator type=\"path\"> "
+         "must "
          "be <integer> or <float>"},
         {"<integrator type=\"path\"><boolean name=\"hide_emitters\" value=\"1\"/></integrator>",
          "\"1\" is neither true nor false"},
@@ -216,7 +217,8 @@ TEST_CASE("what a scene file cannot say is refused with file, line and element")
          "room.xml:4: <bsdf type=\"diffuse\">: the id \"a\" is already taken in line 3"},
         {"<shape type=\"cube\"><ref id=\"a\"/></shape>",
          "room.xml:3: <ref id=\"a\">: there is no element with the id \"a\""},
-        {"<shape type=\"cube\" id=\"a\"><ref id=\"a\"/></shape>", "refers to <shape type=\"cube\">, which does not belong into"},
+        {"<shape type=\"cube\" id=\"a\"><ref id=\"a\"/></shape>",
+         "refers to <shape type=\"cube\">, which does not belong into"},
         {"<bsdf type=\"twosided\" id=\"a\"><ref id=\"a\"/></bsdf>",
          "room.xml:3: <bsdf type=\"twosided\">: the bsdf contains itself"},
         {"<bsdf type=\"twosided\"><bsdf type=\"twosided\"><bsdf type=\"diffuse\"/></bsdf></bsdf>",

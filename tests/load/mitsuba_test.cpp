@@ -379,8 +379,9 @@ TEST_CASE("colours are read in every form") {
     CHECK(reflectance("<integer name=\"reflectance\" value=\"1\"/>") == Rgb(1));
     CHECK(reflectance("<spectrum name=\"reflectance\" value=\"0.25\"/>") == Rgb(0.25f));
     CHECK(reflectance("<rgb name=\"reflectance\" value=\"0.25\" intent=\"reflectance\"/>") == Rgb(0.25f));
-    const auto black_body = scene("<emitter type=\"constant\"><blackbody name=\"radiance\" temperature=\"5000K\" "
-                                  "scale=\"2\"/></emitter>");
+    const auto black_body = scene(
+        "<emitter type=\"constant\"><blackbody name=\"radiance\" temperature=\"5000K\" "
+        "scale=\"2\"/></emitter>");
     CHECK(black_body.sources[0].source.get<EnvironmentSource>()->radiance == 2.0f * blackbody_to_rgb(5000));
 }
 
@@ -419,7 +420,8 @@ TEST_CASE("integrators of any name say how long paths are") {
     for (const char* type : {"path", "volpath", "bdpt", "ptracer", "photonmapper", "prb", "unheard_of"})
         CHECK(depth(type, nine + (type == std::string("path") ? "" : "<float name=\"radius\" value=\"1\"/>")) == 9);
     CHECK(depth("direct", "<integer name=\"emitter_samples\" value=\"4\"/>") == 2);
-    CHECK(depth("aov", "<string name=\"aovs\" value=\"d:depth\"/><integrator type=\"path\">" + nine + "</integrator>") == 9);
+    CHECK(depth("aov",
+                "<string name=\"aovs\" value=\"d:depth\"/><integrator type=\"path\">" + nine + "</integrator>") == 9);
     CHECK_FALSE(depth("depth", "").has_value());
 }
 
@@ -429,8 +431,8 @@ TEST_CASE("one of several sensors is chosen; without any the whole is seen") {
         return "<sensor type=\"perspective\" id=\"" + id + "\"><transform name=\"to_world\"><translate x=\"" +
                std::to_string(x) + "\"/></transform></sensor>";
     };
-    const auto path = folder.write("room.xml", "<scene version=\"3.0.0\">" + sensor_at(1, "left") +
-                                                   sensor_at(2, "right") + "</scene>");
+    const auto path = folder.write(
+        "room.xml", "<scene version=\"3.0.0\">" + sensor_at(1, "left") + sensor_at(2, "right") + "</scene>");
     const auto x_of = [&](const std::string& sensor, Notices* notices = nullptr) {
         return load_mitsuba(path, MitsubaOptions{.sensor = sensor, .notices = notices}).camera.to_world[3].x;
     };
@@ -456,11 +458,13 @@ TEST_CASE("one of several sensors is chosen; without any the whole is seen") {
 TEST_CASE("files are included, with their defaults, ids and versions") {
     const Folder folder;
     std::filesystem::create_directory(folder.path() / "parts");
-    folder.write("parts/shapes.xml",
-                 "<scene version=\"3.0.0\"><default name=\"grey\" value=\"0.75\"/><bsdf type=\"diffuse\" id=\"wall\"><float "
-                 "name=\"reflectance\" value=\"$grey\"/></bsdf><shape type=\"cube\"/></scene>");
-    folder.write("parts/glass.xml", "<bsdf version=\"0.6.0\" type=\"dielectric\"><float name=\"intIOR\" value=\"2\"/>"
-                                    "<float name=\"extIOR\" value=\"1\"/></bsdf>");
+    folder.write(
+        "parts/shapes.xml",
+        "<scene version=\"3.0.0\"><default name=\"grey\" value=\"0.75\"/><bsdf type=\"diffuse\" id=\"wall\"><float "
+        "name=\"reflectance\" value=\"$grey\"/></bsdf><shape type=\"cube\"/></scene>");
+    folder.write("parts/glass.xml",
+                 "<bsdf version=\"0.6.0\" type=\"dielectric\"><float name=\"intIOR\" value=\"2\"/>"
+                 "<float name=\"extIOR\" value=\"1\"/></bsdf>");
     const auto path = folder.write(
         "room.xml", "<scene version=\"3.0.0\">" + std::string(camera) +
                         "<include filename=\"parts/shapes.xml\"/><shape type=\"disk\"><ref id=\"wall\"/></shape>"
@@ -472,8 +476,9 @@ TEST_CASE("files are included, with their defaults, ids and versions") {
     CHECK(result.files.size() == 3);
     CHECK(contains(result.shapes[0].origin.file, "shapes.xml"));
 
-    folder.write("loop.xml", "<scene version=\"3.0.0\"><include filename=\"loop.xml\"/><include filename=\"loop.xml\"/>"
-                             "</scene>");
+    folder.write("loop.xml",
+                 "<scene version=\"3.0.0\"><include filename=\"loop.xml\"/><include filename=\"loop.xml\"/>"
+                 "</scene>");
     CHECK(contains(message_of([&] { load_mitsuba(folder.path() / "loop.xml"); }), "nested more than 64 deep"));
 }
 
@@ -523,8 +528,9 @@ TEST_CASE("cylinders have Mitsuba's place, front and texture coordinates") {
         CHECK(std::abs(turn - std::round(turn)) < 1e-6);
         CHECK(glm::dot(plain.normals[i], p) > 0);
     }
-    const Mesh placed = mesh("<point name=\"p0\" value=\"1, 2, 3\"/><point name=\"p1\" value=\"1, 7, 3\"/><float "
-                             "name=\"radius\" value=\"0.5\"/>");
+    const Mesh placed = mesh(
+        "<point name=\"p0\" value=\"1, 2, 3\"/><point name=\"p1\" value=\"1, 7, 3\"/><float "
+        "name=\"radius\" value=\"0.5\"/>");
     CHECK(area_and_front(placed).first == relative(5 * std::numbers::pi, 1e-12));
     for (const DVec3& p : placed.positions) {
         CHECK(std::hypot(p.x - 1, p.z - 3) == relative(0.5, 1e-4));

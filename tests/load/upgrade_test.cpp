@@ -34,16 +34,17 @@ Texture old_texture(const std::string& type, const std::string& inside) {
 
 TEST_CASE("names in camel case become those of Mitsuba 3") {
     using detail::with_underscores;
-    for (const auto& [from, to] : std::map<std::string, std::string>{{"toWorld", "to_world"},
-                                                                     {"intIOR", "int_ior"},
-                                                                     {"fovAxis", "fov_axis"},
-                                                                     {"alphaU", "alpha_u"},
-                                                                     {"sigmaA", "sigma_a"},
-                                                                     {"principalPointOffsetX", "principal_point_offset_x"},
-                                                                     {"reflectance", "reflectance"},
-                                                                     {"p0", "p0"},
-                                                                     {"IOR", "IOR"},
-                                                                     {"", ""}})
+    for (const auto& [from, to] :
+         std::map<std::string, std::string>{{"toWorld", "to_world"},
+                                            {"intIOR", "int_ior"},
+                                            {"fovAxis", "fov_axis"},
+                                            {"alphaU", "alpha_u"},
+                                            {"sigmaA", "sigma_a"},
+                                            {"principalPointOffsetX", "principal_point_offset_x"},
+                                            {"reflectance", "reflectance"},
+                                            {"p0", "p0"},
+                                            {"IOR", "IOR"},
+                                            {"", ""}})
         CHECK(with_underscores(from) == to);
 }
 
@@ -84,8 +85,11 @@ TEST_CASE("a scene of version 0.6 is read in the words of 3") {
     REQUIRE(notices.size() == 1);
     CHECK(contains(notices[0], "room.xml: is upgraded from version 0.6.0 of the format"));
     // The same words in a file of version 3 mean nothing.
-    CHECK(contains(message_of([&] { load_version("3.0.0", "<sensor type=\"perspective\"><transform name=\"toWorld\"/>"
-                                                          "</sensor>"); }),
+    CHECK(contains(message_of([&] {
+                       load_version("3.0.0",
+                                    "<sensor type=\"perspective\"><transform name=\"toWorld\"/>"
+                                    "</sensor>");
+                   }),
                    "room.xml:2: <sensor type=\"perspective\">: unknown parameter \"toWorld\""));
 }
 
@@ -97,14 +101,16 @@ TEST_CASE("surface models of version 0.6") {
                                         "name=\"extIOR\" value=\"1\"/><string name=\"distribution\" "
                                         "value=\"ggx\"/></bsdf>"))
               .eta == 2);
-    const auto rough = std::get<RoughDielectric>(old_bsdf(
-        "<bsdf type=\"roughglass\"><float name=\"alphaU\" value=\"0.2\"/><float name=\"alphaV\" value=\"0.3\"/></bsdf>"));
+    const auto rough =
+        std::get<RoughDielectric>(old_bsdf("<bsdf type=\"roughglass\"><float name=\"alphaU\" value=\"0.2\"/><float "
+                                           "name=\"alphaV\" value=\"0.3\"/></bsdf>"));
     CHECK(rough.alpha_u == 0.2f);
     CHECK(rough.alpha_v == 0.3f);
     // A metal is copper unless it has a name; "none" is a mirror.
     CHECK(std::get<Conductor>(old_bsdf("<bsdf type=\"conductor\"/>")).eta == metal_by_name("Cu")->eta);
-    CHECK(std::get<Conductor>(old_bsdf("<bsdf type=\"conductor\"><string name=\"material\" value=\"none\"/></bsdf>")).k ==
-          Rgb(1));
+    CHECK(
+        std::get<Conductor>(old_bsdf("<bsdf type=\"conductor\"><string name=\"material\" value=\"none\"/></bsdf>")).k ==
+        Rgb(1));
     CHECK(std::get<Conductor>(old_bsdf("<bsdf type=\"mirror\"/>")).eta == Rgb(0));
     CHECK(std::get<RoughConductor>(old_bsdf("<bsdf type=\"roughmetal\"/>")).eta == metal_by_name("Cu")->eta);
     const auto in_water = std::get<Conductor>(
@@ -113,17 +119,17 @@ TEST_CASE("surface models of version 0.6") {
     CHECK(in_water.eta == Rgb(1));
     CHECK(in_water.k == Rgb(2));
     // What reflects more than all light is darkened as a whole.
-    const auto phong = std::get<ModifiedPhong>(
-        old_bsdf("<bsdf type=\"phong\"><rgb name=\"diffuseReflectance\" value=\"1.0\"/><rgb "
-                 "name=\"specularReflectance\" value=\"0.5\"/></bsdf>"));
+    const auto phong =
+        std::get<ModifiedPhong>(old_bsdf("<bsdf type=\"phong\"><rgb name=\"diffuseReflectance\" value=\"1.0\"/><rgb "
+                                         "name=\"specularReflectance\" value=\"0.5\"/></bsdf>"));
     CHECK(std::abs(phong.diffuse_reflectance.x - 0.66f) < 1e-6f);
     CHECK(std::abs(phong.specular_reflectance.x - 0.33f) < 1e-6f);
 }
 
 TEST_CASE("a mixture is a chain of blends") {
-    const auto result = old(
-        "<shape type=\"rectangle\"><bsdf type=\"mixturebsdf\"><string name=\"weights\" value=\"0.2, 0.3, 0.5\"/>"
-        "<bsdf type=\"diffuse\"/><bsdf type=\"conductor\"/><bsdf type=\"dielectric\"/></bsdf></shape>");
+    const auto result =
+        old("<shape type=\"rectangle\"><bsdf type=\"mixturebsdf\"><string name=\"weights\" value=\"0.2, 0.3, 0.5\"/>"
+            "<bsdf type=\"diffuse\"/><bsdf type=\"conductor\"/><bsdf type=\"dielectric\"/></bsdf></shape>");
     const auto& outer = std::get<Blend>(*result.materials[result.shapes[0].material].layer);
     CHECK(outer.weight.most() == Rgb(0.5f));
     CHECK(std::holds_alternative<Dielectric>(result.materials[outer.second].bsdf));
@@ -145,7 +151,8 @@ TEST_CASE("textures of version 0.6") {
     CHECK(scaled(Vec2(0.05f, 0.3f)) == plain(Vec2(0.2f, 0.6f)));
     const std::string file = "<string name=\"filename\" value=\"grey.pfm\"/>";
     for (const char* filter : {"ewa", "trilinear", "bilinear", "nearest"})
-        CHECK(old_texture("bitmap", file + "<string name=\"filterType\" value=\"" + filter + "\"/>").most() == Rgb(0.5f));
+        CHECK(old_texture("bitmap", file + "<string name=\"filterType\" value=\"" + filter + "\"/>").most() ==
+              Rgb(0.5f));
     CHECK(old_texture("bitmap", file + "<float name=\"gamma\" value=\"1\"/><float name=\"maxAnisotropy\" value=\"9\"/>")
               .most() == Rgb(0.5f));
     CHECK(contains(message_of([&] { old_texture("bitmap", file + "<float name=\"gamma\" value=\"1.8\"/>"); }),

@@ -14,7 +14,7 @@ struct MitsubaOptions {
     std::map<std::string, std::string> defines{};  ///< values of `$name`, before any `<default>`
     Strictness strictness = Strictness::strict;
     std::vector<std::filesystem::path> search_paths{};  ///< where files are that are not beside the scene file
-    std::string sensor{};  ///< the id of a `<sensor>`, or its number from 0; empty: the first one
+    std::string sensor{};          ///< the id of a `<sensor>`, or its number from 0; empty: the first one
     Notices* notices = nullptr;    ///< gets what was skipped, guessed or upgraded without another image in mind
     Problems* problems = nullptr;  ///< gets what the file asks for and does not get
 };
@@ -91,8 +91,8 @@ private:
         const auto number = parse_integer(wanted);
         if (number && *number >= 0 && static_cast<std::size_t>(*number) < sensors.size())
             return sensors[static_cast<std::size_t>(*number)];
-        fail({scene_.files[0], 0, {}}, "there is no sensor " + quote(wanted) +
-                           "; known are 0 to " + std::to_string(sensors.size() - 1) + ids);
+        fail({scene_.files[0], 0, {}},
+             "there is no sensor " + quote(wanted) + "; known are 0 to " + std::to_string(sensors.size() - 1) + ids);
     }
 
     void place_camera(const XmlElement& element) {

@@ -64,8 +64,9 @@ void read_parameters(XmlElement& element, B& model) {
         if constexpr (std::is_same_v<std::remove_cvref_t<decltype(model.*parameter.member)>, float>) {
             if (const auto value = element.number(name)) parameter.set(model, in_range(static_cast<float>(*value)));
         } else {
-            const Rgb value = element.color(name, model.*parameter.member,
-                                            name == "eta" || name == "k" ? SpectrumUse::index : SpectrumUse::reflectance);
+            const Rgb value =
+                element.color(name, model.*parameter.member,
+                              name == "eta" || name == "k" ? SpectrumUse::index : SpectrumUse::reflectance);
             parameter.set(model, {in_range(value.x), in_range(value.y), in_range(value.z)});
         }
     });
@@ -160,8 +161,7 @@ private:
             element_.log().notice(element_.origin(), "reflects more than all light, and is darkened as in Mitsuba 0.6");
         } else if (!lobe) {
             element_.problem("", "reflects more than all light", "its lobe is darkened");
-            model.specular_reflectance =
-                glm::clamp(Rgb(1) - most_diffuse, Rgb(0), model.specular_reflectance);
+            model.specular_reflectance = glm::clamp(Rgb(1) - most_diffuse, Rgb(0), model.specular_reflectance);
         }
         return with_textures(model);
     }
@@ -193,7 +193,8 @@ private:
         read_facets(element_, model);
         const bool u = given("alpha_u"), v = given("alpha_v");
         if (u != v || (given("alpha") && u))
-            element_.problem("alpha_u", "give either alpha, or both alpha_u and alpha_v", "the others are left as usual");
+            element_.problem("alpha_u", "give either alpha, or both alpha_u and alpha_v",
+                             "the others are left as usual");
         return model;
     }
     bool given(const std::string& name) const { return element_.has(name) || element_.has_object(name); }
@@ -207,8 +208,7 @@ private:
     LibraryBsdf rough_plastic() {
         RoughPlastic facets;
         read_facets(element_, facets);
-        const float alpha =
-            clamped(element_, "alpha", as_roughness, static_cast<float>(element_.number("alpha", 0.1)));
+        const float alpha = clamped(element_, "alpha", as_roughness, static_cast<float>(element_.number("alpha", 0.1)));
         const float eta = read_relative_index(element_, "polypropylene");
         if (!as_relative_index.contains(eta)) element_.error("the index of refraction is impossible");
         RoughPlastic model{.distribution = facets.distribution, .alpha = alpha, .eta = eta};

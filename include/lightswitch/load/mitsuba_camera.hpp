@@ -68,7 +68,8 @@ inline FilmDescription read_film(const XmlFile& file, pugi::xml_node node, std::
     if (const auto stops = element.number("exposure")) exposure = static_cast<float>(*stops);
     // How Mitsuba would store the image, and what lies beside it, says nothing about what is in it.
     element.accept({"pixel_format", "component_format", "file_format", "banner", "compensate", "high_quality_edges",
-                    "sample_border", "attach_log", "gamma", "tonemap_method", "key", "burn", "variable", "digits", "channel_names"});
+                    "sample_border", "attach_log", "gamma", "tonemap_method", "key", "burn", "variable", "digits",
+                    "channel_names"});
     for (const char* prefix : {"metadata", "label"}) element.accept_beginning(prefix);
     element.finish();
     check(film);
@@ -186,7 +187,8 @@ inline void read_integrator(const XmlFile& file, pugi::xml_node node, LibraryDes
     const std::string type = element.type();
     const auto inner = element.objects("integrator");
     if (type != "path")
-        file.log().notice(element.origin(), "which method renders is not the file's choice: only the path length counts");
+        file.log().notice(element.origin(),
+                          "which method renders is not the file's choice: only the path length counts");
     if (element.boolean("hide_emitters", false))
         file.log().notice(element.origin("hide_emitters"), "is not supported: lamps are seen");
     if (type == "direct") {

@@ -25,8 +25,7 @@ private:
         const auto emission = [&](const char* name) { return element.color(name, 1, SpectrumUse::emission); };
         if (element.type() == "point") {
             const auto position = element.vector("position");
-            if (position && to_world)
-                element.problem("to_world", "give either position or to_world", "it is ignored");
+            if (position && to_world) element.problem("to_world", "give either position or to_world", "it is ignored");
             add(element, PointSource{.position = position.value_or(to_world ? DVec3((*to_world)[3]) : DVec3(0)),
                                      .intensity = emission("intensity")});
         } else if (element.type() == "directional") {

@@ -128,8 +128,7 @@ private:
     }
 
     static Mesh read_cylinder(XmlElement& element, const DMat4& to_world, bool flip) {
-        const DVec3 from = element.vector("p0").value_or(DVec3(0)),
-                    to = element.vector("p1").value_or(DVec3(0, 0, 1));
+        const DVec3 from = element.vector("p0").value_or(DVec3(0)), to = element.vector("p1").value_or(DVec3(0, 0, 1));
         const double radius = element.positive("radius", 1);
         const double length = glm::length(to - from);
         if (!(length > 0)) element.error("\"p0\" and \"p1\" are the same point");

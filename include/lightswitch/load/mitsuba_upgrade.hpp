@@ -96,9 +96,8 @@ inline void upgrade_words(pugi::xml_node element) {
     if (const auto tag = tags.find(element.name()); tag != tags.end()) element.set_name(tag->second);
     if (auto name = element.attribute("name"); name && std::string_view(element.name()) != "default")
         name.set_value(with_underscores(name.value()).c_str());
-    static const std::map<std::string_view, const char*> bsdfs{{"lambertian", "diffuse"},
-                                                               {"roughmetal", "roughconductor"},
-                                                               {"roughglass", "roughdielectric"}};
+    static const std::map<std::string_view, const char*> bsdfs{
+        {"lambertian", "diffuse"}, {"roughmetal", "roughconductor"}, {"roughglass", "roughdielectric"}};
     if (std::string_view(element.name()) != "bsdf") return;
     if (const auto type = bsdfs.find(element.attribute("type").value()); type != bsdfs.end())
         element.attribute("type").set_value(type->second);

@@ -144,8 +144,7 @@ inline void XmlFile::read_version(Part& part) {
         log_.problem(origin(root), "is of version " + version + ", but only versions up to 3 of the format are known",
                      instead);
     else part.is_old = *major < 2;
-    if (part.is_old)
-        log_.notice(Origin{part.file, 0, {}}, "is upgraded from version " + version + " of the format");
+    if (part.is_old) log_.notice(Origin{part.file, 0, {}}, "is upgraded from version " + version + " of the format");
 }
 
 inline Origin XmlFile::origin(pugi::xml_node node) const {
@@ -246,11 +245,11 @@ inline void XmlFile::prepare(pugi::xml_node node, int depth) {
     for (const pugi::xml_attribute attribute : node.attributes()) replace(node, attribute);
     if (is_old(node)) upgrade_words(node);
     const std::string_view tag = node.name();
-    if (tag == "default") log_.attempt("it is ignored", [&] {
+    if (tag == "default")
+        log_.attempt("it is ignored", [&] {
             check_attributes(node, {"name", "value"});
-            at_place(origin(node), [&] {
-                parameters_.define(node.attribute("name").value(), node.attribute("value").value());
-            });
+            at_place(origin(node),
+                     [&] { parameters_.define(node.attribute("name").value(), node.attribute("value").value()); });
         });
     if (tag == "path") log_.attempt("it is ignored", [&] { add_path(node); });
     if (tag == "include") return include(node, depth);
@@ -265,10 +264,10 @@ inline void XmlFile::replace(pugi::xml_node node, pugi::xml_attribute attribute)
     if (value.find('$') == std::string_view::npos) return;
     auto [text, unknown] = at_place(origin(node), [&] { return parameters_.replaced(value); });
     for (const std::string& name : unknown)
-        log_.problem(origin(node),
-                     "the parameter " + quote("$" + name) +
-                         " is not defined: give it a <default> above, or set it when loading",
-                     "it stays as it is");
+        log_.problem(
+            origin(node),
+            "the parameter " + quote("$" + name) + " is not defined: give it a <default> above, or set it when loading",
+            "it stays as it is");
     attribute.set_value(text.c_str());
 }
 

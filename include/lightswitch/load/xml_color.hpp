@@ -23,7 +23,8 @@ inline Rgb read_rgb(const XmlFile& file, pugi::xml_node node) {
     const auto numbers = hexadecimal ? std::vector<double>{hexadecimal->x, hexadecimal->y, hexadecimal->z}
                                      : read_numbers(file, node, "value", {1, 3});
     Rgb result(numbers.size() == 1 ? DVec3(numbers[0]) : DVec3(numbers[0], numbers[1], numbers[2]));
-    if (std::string_view(node.name()) == "srgb") result = {srgb_decode(result.x), srgb_decode(result.y), srgb_decode(result.z)};
+    if (std::string_view(node.name()) == "srgb")
+        result = {srgb_decode(result.x), srgb_decode(result.y), srgb_decode(result.z)};
     if (!lightswitch::is_finite(result)) fail(file.origin(node), "the colour is too large");
     return result;
 }

@@ -110,20 +110,17 @@ private:
 inline XmlElement::XmlElement(const XmlFile& file, pugi::xml_node node) : file_(file), node_(node) {
     if (std::string_view(node.name()) == "scene") file.check_attributes(node, {}, {"version", "type", "id", "name"});
     else file.check_attributes(node, {"type"}, {"id", "name"});
-    for (const pugi::xml_node child : file.children(node))
-        file.log().attempt("it is left out", [&] { sort(child); });
+    for (const pugi::xml_node child : file.children(node)) file.log().attempt("it is left out", [&] { sort(child); });
 }
 
 inline void XmlElement::sort(pugi::xml_node child) {
-    static const std::set<std::string_view> vectors{"point", "vector"},
-        values{"float", "integer", "boolean", "string"}, colors{"rgb", "srgb"},
-        objects{"bsdf",    "shape",      "emitter", "sensor", "film",  "rfilter",
-                "sampler", "integrator", "texture", "ref",    "medium"};
+    static const std::set<std::string_view> vectors{"point", "vector"}, values{"float", "integer", "boolean", "string"},
+        colors{"rgb", "srgb"}, objects{"bsdf",    "shape",      "emitter", "sensor", "film",  "rfilter",
+                                       "sampler", "integrator", "texture", "ref",    "medium"};
     const std::string_view tag = child.name();
     if (objects.contains(tag)) return objects_.push_back(child);
     const bool typed = tag == "spectrum" && child.attribute("type");
-    if (tag == "spectrum")
-        file_.check_attributes(child, {"name"}, {"value", "filename", "type", "id", "intent"});
+    if (tag == "spectrum") file_.check_attributes(child, {"name"}, {"value", "filename", "type", "id", "intent"});
     else if (tag == "blackbody") file_.check_attributes(child, {"name", "temperature"}, {"scale"});
     else if (values.contains(tag)) file_.check_attributes(child, {"name", "value"});
     else if (colors.contains(tag)) file_.check_attributes(child, {"name", "value"}, {"intent"});
@@ -179,7 +176,8 @@ inline std::optional<int> XmlElement::integer(const std::string& name, int lowes
             const std::string_view word = next_word(text);
             auto value = parse_integer(word);
             const auto real = parse_number(word);
-            if (std::string_view(node.name()) == "float" && real && std::abs(*real) < 1e15 && std::trunc(*real) == *real)
+            if (std::string_view(node.name()) == "float" && real && std::abs(*real) < 1e15 &&
+                std::trunc(*real) == *real)
                 value = static_cast<std::int64_t>(*real);
             if (!value || !next_word(text).empty())
                 fail(file_.origin(node), quote(node.attribute("value").value()) + " is not an integer");
@@ -292,13 +290,11 @@ inline void XmlElement::finish() const {
         if (read_textures_.contains(node)) continue;
         const bool reference = std::string_view(node.name()) == "ref";
         const pugi::xml_node meant = reference ? file_.target(node) : pugi::xml_node();
-        const std::string what =
-            !reference ? ""
-            : meant    ? "refers to " + file_.origin(meant).element + ", which "
-                       : "there is no element with the id " + quote(node.attribute("id").value());
+        const std::string what = !reference ? ""
+                                 : meant    ? "refers to " + file_.origin(meant).element + ", which "
+                                            : "there is no element with the id " + quote(node.attribute("id").value());
         log().problem(file_.origin(node),
-                      reference && !meant ? what : what + "does not belong into " + origin().element,
-                      "it is left out");
+                      reference && !meant ? what : what + "does not belong into " + origin().element, "it is left out");
     }
 }
 

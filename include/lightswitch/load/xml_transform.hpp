@@ -99,14 +99,13 @@ inline DMat4 read_transform_step(const XmlFile& file, pugi::xml_node node) {
         const DVec3 eye = vector("origin"), target = vector("target");
         DVec3 up = node.attribute("up") ? vector("up") : DVec3(0);
         if (up == DVec3(0) && target != eye) up = any_tangent(glm::normalize(target - eye));
-        if (!(glm::length(target - eye) > 0))
-            fail(file.origin(node), "\"target\" is at \"origin\": move one of them");
+        if (!(glm::length(target - eye) > 0)) fail(file.origin(node), "\"target\" is at \"origin\": move one of them");
         try {
             result = CameraDescription::look_at(eye, target, up);
         } catch (const Error&) {  // which speaks of a camera
-            file.log().problem(
-                file.origin(node),
-                "\"up\" is parallel to the way from \"origin\" to \"target\": give another one", "another one is used");
+            file.log().problem(file.origin(node),
+                               "\"up\" is parallel to the way from \"origin\" to \"target\": give another one",
+                               "another one is used");
             result = CameraDescription::look_at(eye, target, any_tangent(glm::normalize(target - eye)));
         }
     } else if (tag == "matrix") {
