@@ -97,7 +97,7 @@ std::string summary_line(const AnyMethod& method, const Rendered& rendered, cons
                     statistics.seconds > 0 ? 1e-6 * double(statistics.counts.rays) / statistics.seconds : 0);
     if (std::isfinite(rendered.estimated_error))
         text += fmt::format(", estimated error {:.2g} %", 100 * rendered.estimated_error);
-    if (exposure) text += fmt::format(", exposure {:.2g} stops", *exposure);
+    if (exposure) text += fmt::format(", exposure {:.4g} stops", *exposure);
     for (std::size_t i = 0; i < options.outputs.size(); ++i)
         text += (i == 0 ? "; wrote " : ", ") + options.outputs[i].string();
     return text + "\n";

@@ -75,7 +75,7 @@ TEST_CASE("the reference scenes load with their values") {
     const auto box = load_mitsuba(folder / "cbox.xml");
     CHECK(box.name == "cbox");
     CHECK(box.shapes.size() == 5);
-    CHECK(box.materials.size() == 4);  // white serves two shapes
+    CHECK(box.materials.size() == 5);  // white serves two shapes, and there is the inside of the two-sided one
     CHECK(box.shapes[1].material == box.shapes[4].material);
     CHECK(box.shapes[0].emission == Rgb(18.387f, 13.9873f, 6.75357f));
     CHECK(std::get<Lambert>(box.materials[0].bsdf).reflectance == Rgb(0.885809f, 0.698859f, 0.666422f));
@@ -366,4 +366,194 @@ TEST_CASE("parameters of the file are replaced") {
                            {{"x", "$x"}});
                    }),
                    "the id \"$x\" is already taken in line 2"));
+}
+
+TEST_CASE("colours are read in every form") {
+    const auto reflectance = [](const std::string& color) {
+        return std::get<Lambert>(bsdf("<bsdf type=\"diffuse\">" + color + "</bsdf>")).reflectance;
+    };
+    // Mitsuba 0.6 and 2 take hexadecimal digits of <rgb> for linear values.
+    CHECK(reflectance("<rgb name=\"reflectance\" value=\"#ff8000\"/>") == Rgb(1, 128.0f / 255, 0));
+    CHECK(reflectance("<srgb name=\"reflectance\" value=\" #ff8000 \"/>") == Rgb(1, srgb_decode(128.0f / 255), 0));
+    CHECK(reflectance("<srgb name=\"reflectance\" value=\"0.5\"/>") == Rgb(srgb_decode(0.5f)));
+    CHECK(reflectance("<integer name=\"reflectance\" value=\"1\"/>") == Rgb(1));
+    CHECK(reflectance("<spectrum name=\"reflectance\" value=\"0.25\"/>") == Rgb(0.25f));
+    CHECK(reflectance("<rgb name=\"reflectance\" value=\"0.25\" intent=\"reflectance\"/>") == Rgb(0.25f));
+    const auto black_body = scene(
+        "<emitter type=\"constant\"><blackbody name=\"radiance\" temperature=\"5000K\" "
+        "scale=\"2\"/></emitter>");
+    CHECK(black_body.sources[0].source.get<EnvironmentSource>()->radiance == 2.0f * blackbody_to_rgb(5000));
+}
+
+TEST_CASE("what does not change the image is accepted") {
+    CHECK(film("<boolean name=\"sample_border\" value=\"true\"/><string name=\"pixel_format\" value=\"rgba\"/><boolean "
+               "name=\"banner\" value=\"false\"/><boolean name=\"compensate\" value=\"true\"/><string "
+               "name=\"component_format\" value=\"int8\"/><string name=\"file_format\" value=\"png\"/><boolean "
+               "name=\"high_quality_edges\" value=\"true\"/><string name=\"metadata['author']\" value=\"x\"/>")
+              .width == 768);
+    CHECK(scene("<integrator type=\"path\"><boolean name=\"strict_normals\" value=\"true\"/></integrator>").max_depth ==
+          -1);
+    CHECK(scene("<integrator type=\"path\"><float name=\"max_depth\" value=\"5.0\"/></integrator>").max_depth == 5);
+    CHECK(scene("<shape type=\"cube\"><boolean name=\"flip_normals\" value=\"true\"/><boolean name=\"flip_normals\" "
+                "value=\"true\"/></shape>")
+              .shapes.size() == 1);
+    for (const char* type : {"sobol", "halton", "hammersley", "unheard_of"})
+        CHECK(parse("<sensor type=\"perspective\"><sampler type=\"" + std::string(type) +
+                    "\"><integer name=\"sample_count\" value=\"16\"/><integer name=\"scramble\" "
+                    "value=\"-1\"/></sampler></sensor>")
+                  .samples == 16);
+    for (const char* type : {"mitchell", "catmullrom", "lanczos"})
+        CHECK(film("<rfilter type=\"" + std::string(type) + "\"><integer name=\"lobes\" value=\"3\"/></rfilter>")
+                  .filter.kind() == Filter::Kind::gaussian);
+    const auto picture = parse(
+        "<sensor type=\"perspective\"><film type=\"ldrfilm\"><float name=\"exposure\" value=\"1.5\"/><float "
+        "name=\"gamma\" value=\"2.2\"/></film></sensor>");
+    CHECK(picture.exposure == 1.5f);
+    CHECK_FALSE(scene("").exposure);
+}
+
+TEST_CASE("integrators of any name say how long paths are") {
+    const auto depth = [](const std::string& type, const std::string& inside) {
+        return scene("<integrator type=\"" + type + "\">" + inside + "</integrator>").max_depth;
+    };
+    const std::string nine = "<integer name=\"max_depth\" value=\"9\"/>";
+    for (const char* type : {"path", "volpath", "bdpt", "ptracer", "photonmapper", "prb", "unheard_of"})
+        CHECK(depth(type, nine + (type == std::string("path") ? "" : "<float name=\"radius\" value=\"1\"/>")) == 9);
+    CHECK(depth("direct", "<integer name=\"emitter_samples\" value=\"4\"/>") == 2);
+    CHECK(depth("aov",
+                "<string name=\"aovs\" value=\"d:depth\"/><integrator type=\"path\">" + nine + "</integrator>") == 9);
+    CHECK_FALSE(depth("depth", "").has_value());
+}
+
+TEST_CASE("one of several sensors is chosen; without any the whole is seen") {
+    const Folder folder;
+    const auto sensor_at = [](int x, const std::string& id) {
+        return "<sensor type=\"perspective\" id=\"" + id + "\"><transform name=\"to_world\"><translate x=\"" +
+               std::to_string(x) + "\"/></transform></sensor>";
+    };
+    const auto path = folder.write(
+        "room.xml", "<scene version=\"3.0.0\">" + sensor_at(1, "left") + sensor_at(2, "right") + "</scene>");
+    const auto x_of = [&](const std::string& sensor, Notices* notices = nullptr) {
+        return load_mitsuba(path, MitsubaOptions{.sensor = sensor, .notices = notices}).camera.to_world[3].x;
+    };
+    Notices notices;
+    CHECK(x_of("", &notices) == 1);
+    REQUIRE(notices.size() == 1);
+    CHECK(contains(notices[0], "<sensor type=\"perspective\">: is one of 2 sensors: the first is used"));
+    CHECK(x_of("0") == 1);
+    CHECK(x_of("1") == 2);
+    CHECK(x_of("right") == 2);
+    for (const char* wrong : {"2", "-1", "middle"})
+        CHECK(contains(message_of([&] { x_of(wrong); }), "; known are 0 to 1, \"left\", \"right\""));
+
+    const auto bare = folder.write("bare.xml", "<scene version=\"3.0.0\"><shape type=\"sphere\"/></scene>");
+    const auto framed = load_mitsuba(bare, MitsubaOptions{.notices = &notices});
+    const DVec3 to_shape = -DVec3(framed.camera.to_world[3]);
+    CHECK(glm::length(to_shape) > 1);
+    CHECK(glm::dot(glm::normalize(to_shape), DVec3(framed.camera.to_world[2])) > 0.9);
+    CHECK(contains(notices.back(), "there is no <sensor>"));
+    CHECK(contains(message_of([&] { load_mitsuba(bare, MitsubaOptions{.sensor = "0"}); }), "there is no <sensor>"));
+}
+
+TEST_CASE("files are included, with their defaults, ids and versions") {
+    const Folder folder;
+    std::filesystem::create_directory(folder.path() / "parts");
+    folder.write(
+        "parts/shapes.xml",
+        "<scene version=\"3.0.0\"><default name=\"grey\" value=\"0.75\"/><bsdf type=\"diffuse\" id=\"wall\"><float "
+        "name=\"reflectance\" value=\"$grey\"/></bsdf><shape type=\"cube\"/></scene>");
+    folder.write("parts/glass.xml",
+                 "<bsdf version=\"0.6.0\" type=\"dielectric\"><float name=\"intIOR\" value=\"2\"/>"
+                 "<float name=\"extIOR\" value=\"1\"/></bsdf>");
+    const auto path = folder.write(
+        "room.xml", "<scene version=\"3.0.0\">" + std::string(camera) +
+                        "<include filename=\"parts/shapes.xml\"/><shape type=\"disk\"><ref id=\"wall\"/></shape>"
+                        "<shape type=\"disk\"><include filename=\"parts\\glass.xml\"/></shape></scene>");
+    const auto result = load_mitsuba(path);
+    REQUIRE(result.shapes.size() == 3);
+    CHECK(std::get<Lambert>(result.materials[result.shapes[1].material].bsdf).reflectance == Rgb(0.75f));
+    CHECK(std::get<Dielectric>(result.materials[result.shapes[2].material].bsdf).eta == 2);
+    CHECK(result.files.size() == 3);
+    CHECK(contains(result.shapes[0].origin.file, "shapes.xml"));
+
+    folder.write("loop.xml",
+                 "<scene version=\"3.0.0\"><include filename=\"loop.xml\"/><include filename=\"loop.xml\"/>"
+                 "</scene>");
+    CHECK(contains(message_of([&] { load_mitsuba(folder.path() / "loop.xml"); }), "nested more than 64 deep"));
+}
+
+TEST_CASE("files are found in search paths, behind backslashes and in other capitals") {
+    const Folder folder;
+    for (const char* name : {"a", "b", "Meshes"}) std::filesystem::create_directory(folder.path() / name);
+    const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    folder.write("a/in_a.obj", triangle);
+    folder.write("b/in_b.obj", triangle);
+    folder.write("Meshes/Floor.OBJ", triangle);
+    const auto load = [&](const std::string& before, const std::string& name, MitsubaOptions options) {
+        const auto path = folder.write("room.xml", "<scene version=\"3.0.0\">" + std::string(camera) + before +
+                                                       "<shape type=\"obj\">" + file(name) + "</shape></scene>");
+        return load_mitsuba(path, options).files.back();
+    };
+    CHECK(load("<path value=\"a\"/>", "in_a.obj", {}) == (folder.path() / "a" / "in_a.obj").string());
+    CHECK(load("", "in_b.obj", {.search_paths = {folder.path() / "b"}}) == (folder.path() / "b" / "in_b.obj").string());
+    CHECK(load("", "a\\in_a.obj", {}) == (folder.path() / "a" / "in_a.obj").string());
+    CHECK(load("", (folder.path() / "a" / "in_a.obj").string(), {}) == (folder.path() / "a" / "in_a.obj").string());
+    Notices notices;
+    CHECK(load("", "meshes\\floor.obj", {.notices = &notices}) == (folder.path() / "Meshes" / "Floor.OBJ").string());
+    REQUIRE(notices.size() == 1);
+    CHECK(contains(notices[0], "there is no \"meshes\\floor.obj\": \""));
+    CHECK(contains(message_of([&] { load("", "in_c.obj", {}); }), "in_c.obj: no such file"));
+}
+
+TEST_CASE("cylinders have Mitsuba's place, front and texture coordinates") {
+    const auto mesh = [](const std::string& inside) {
+        return std::get<Mesh>(scene("<shape type=\"cylinder\">" + inside + "</shape>").shapes.at(0).geometry);
+    };
+    const auto area_and_front = [](const Mesh& m) {
+        double area = 0, front = 0;
+        for (const auto& [i, j, k] : m.triangles) {
+            const DVec3 cross = glm::cross(m.positions[j] - m.positions[i], m.positions[k] - m.positions[i]);
+            area += glm::length(cross) / 2;
+            front += glm::dot(cross, m.normals[i]);
+        }
+        return std::pair(area, front);
+    };
+    const Mesh plain = mesh("");
+    CHECK(area_and_front(plain).first == relative(2 * std::numbers::pi, 1e-12));
+    CHECK(area_and_front(plain).second > 0);
+    for (std::size_t i = 0; i < plain.positions.size(); ++i) {
+        const DVec3 p = plain.positions[i];
+        CHECK(plain.uvs[i].y == relative(p.z, 1e-6));
+        const double turn = std::atan2(p.y, p.x) / (2 * std::numbers::pi) - plain.uvs[i].x;
+        CHECK(std::abs(turn - std::round(turn)) < 1e-6);
+        CHECK(glm::dot(plain.normals[i], p) > 0);
+    }
+    const Mesh placed = mesh(
+        "<point name=\"p0\" value=\"1, 2, 3\"/><point name=\"p1\" value=\"1, 7, 3\"/><float "
+        "name=\"radius\" value=\"0.5\"/>");
+    CHECK(area_and_front(placed).first == relative(5 * std::numbers::pi, 1e-12));
+    for (const DVec3& p : placed.positions) {
+        CHECK(std::hypot(p.x - 1, p.z - 3) == relative(0.5, 1e-4));
+        CHECK((std::abs(p.y - 2) < 1e-12 || std::abs(p.y - 7) < 1e-12));
+    }
+    // Computed by Mitsuba 3.9.1: where u is 0 and 1/4.
+    CHECK(glm::length(placed.positions[0] - DVec3(1.5, 2, 3)) < 1e-4);
+    CHECK(glm::length(placed.positions[2 * 64] - DVec3(1, 2, 2.5)) < 1e-4);
+    const auto outward = [&](const std::string& inside) {
+        const Mesh m = mesh(inside);
+        CHECK(area_and_front(m).second > 0);  // normals and winding agree
+        return glm::dot(m.normals[0], DVec3(m.positions[0].x, m.positions[0].y, 0)) > 0;
+    };
+    CHECK(outward(mirror_x));
+    CHECK(outward(mirror_z));
+    CHECK_FALSE(outward(flip));
+    CHECK_FALSE(outward(flip + mirror_x));
+}
+
+TEST_CASE("lamps are referred to, and media beside them") {
+    const auto result = scene(
+        "<emitter type=\"area\" id=\"lamp\"><rgb name=\"radiance\" value=\"3\"/></emitter><shape type=\"disk\"><ref "
+        "id=\"lamp\"/></shape>");
+    CHECK(result.shapes[0].emission == Rgb(3));
+    CHECK(result.sources.empty());
 }

@@ -156,6 +156,7 @@ TEST_CASE("--stats: every key, and alone on standard output") {
                             "sampler",
                             "max_depth",
                             "rr_depth",
+                            "stand_ins",
                             "mean",
                             "estimated_error",
                             "non_finite",

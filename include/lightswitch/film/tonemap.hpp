@@ -77,7 +77,7 @@ inline float auto_exposure(const Image& image) {
     double sum = 0;
     for (auto value = brightness.begin() + cut; value != brightness.end() - cut; ++value) sum += *value;
     const double mean = sum / static_cast<double>(std::ssize(brightness) - 2 * cut);
-    return static_cast<float>(std::round(10 * (std::log2(0.18) - mean)) / 10);
+    return static_cast<float>(std::round(10 * (std::log2(0.18) - mean)) / 10) + 0.0f;  // no -0
 }
 
 }  // namespace lightswitch

@@ -64,7 +64,7 @@ public:
         for (const auto node : element.objects("shape")) shapes.read(node);
         EmitterReader emitters(file_, scene_);
         for (const auto node : element.objects("emitter")) emitters.read(node);
-        if (element.object("medium")) element.problem("", "media are not supported", "it is left out");
+        element.refuse_media();
         element.finish();
         for (std::string& file : textures.files()) scene_.files.push_back(std::move(file));
         if (sensors.empty()) place_camera(element);

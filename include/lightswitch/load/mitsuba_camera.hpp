@@ -23,7 +23,8 @@ inline Filter read_filter(const XmlFile& file, pugi::xml_node node) {
     } else if (type == "gaussian") {
         result = Filter::gaussian(positive("stddev", 0.5));
     } else if (type == "box") {
-        element.number("radius");  // always half a pixel here, as it is in Mitsuba when nothing is said
+        if (element.number("radius", 0.5) != 0.5)
+            element.problem("radius", "a box has a radius of 0.5 pixels here", "it has");
     } else {
         if (type != "mitchell" && type != "catmullrom" && type != "lanczos")
             element.unknown_type("box, tent and gaussian");
@@ -155,7 +156,7 @@ inline void read_sensor(const XmlFile& file, pugi::xml_node node, LibraryDescrip
     // Mitsuba's default is its far plane.
     const double focus = element.positive("focus_distance", std::isfinite(camera.far_clip) ? camera.far_clip : 10000);
     element.accept({"shutter_open", "shutter_close"});  // nothing moves
-    if (element.object("medium")) element.problem("", "media are not supported", "it is left out");
+    element.refuse_media();
     if (lens) {
         const auto radius = element.number("aperture_radius");
         if (!radius) element.problem("", "the parameter \"aperture_radius\" is missing", "it is 0");

@@ -40,7 +40,7 @@ private:
             shape.emission = shape.emission_texture->mean();
             shape.emission_texture.reset();
         }
-        if (element.object("medium")) element.problem("", "media are not supported", "it is left out");
+        element.refuse_media();
         element.finish();
         shape.material = material_of(bsdf, shape.emission.has_value(), element.origin());
         if (shape.emission && is_masked(scene_, shape.material)) {
@@ -136,8 +136,7 @@ private:
         const DMat4 placed(glm::dvec4(radius * side, 0), glm::dvec4(radius * glm::cross(axis, side), 0),
                            glm::dvec4(to - from, 0), glm::dvec4(from, 1));
         const Mesh mesh = cylinder(to_world * placed);
-        // As with a sphere, a reflection turns it inside out.
-        return flip != (linear_determinant(to_world) < 0) ? mesh.flipped() : mesh;
+        return flip ? mesh.flipped() : mesh;  // a reflection leaves its front outside, as in Mitsuba 3.9
     }
 
     Mesh read_mesh_file(XmlElement& element, const DMat4& to_world, bool flip) {
@@ -150,7 +149,7 @@ private:
         const FileNormals use = flat ? FileNormals::ignore : FileNormals::use;
         if (element.has("max_smooth_angle"))
             element.problem("max_smooth_angle", "normals by angle are not supported", "it is ignored");
-        element.accept({"collapse", "max_smooth_angle", "src_format"});
+        element.accept({"collapse", "max_smooth_angle"});
         Notices notices;
         Mesh mesh = at_place(element.origin(), [&] {
             return type == "obj"   ? load_obj(path, use, &notices)

@@ -76,14 +76,17 @@ public:
     std::vector<pugi::xml_node> objects(std::string_view tag);
     /// The only one of them, or nothing. Others are a problem.
     std::optional<pugi::xml_node> object(std::string_view tag);
+    /// Takes media for a problem each.
+    void refuse_media();
     /// Takes every parameter and object that was never asked for as a problem.
     void finish() const;
     /// Lets parameters pass that say nothing about the image.
-    void accept(std::initializer_list<const char*> names) { asked_.insert(names.begin(), names.end()); }
-    /// Those, whose names begin with this.
+    void accept(std::initializer_list<const char*> names) {
+        for (const char* name : names) parameters_.erase(name);
+    }
+    /// Those whose names begin with this.
     void accept_beginning(std::string_view prefix) {
-        for (const auto& [name, node] : parameters_)
-            if (name.starts_with(prefix)) asked_.insert(name);
+        std::erase_if(parameters_, [&](const auto& parameter) { return parameter.first.starts_with(prefix); });
     }
     /// Lets everything pass that is there.
     void accept_rest() {
@@ -268,6 +271,11 @@ inline std::optional<pugi::xml_node> XmlElement::object(std::string_view tag) {
         log().problem(file_.origin(found[i]), "is the second one in " + origin().element, "it is left out");
     if (found.empty()) return {};
     return found[0];
+}
+
+inline void XmlElement::refuse_media() {
+    for (const pugi::xml_node medium : objects("medium"))
+        log().problem(file_.origin(medium), "media are not supported", "it is left out");
 }
 
 inline void XmlElement::finish() const {

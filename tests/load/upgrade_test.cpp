@@ -1,0 +1,165 @@
+#include "load/files.hpp"
+
+#include <lightswitch/load/mitsuba.hpp>
+
+using namespace lightswitch;
+using namespace lightswitch::test;
+
+namespace {
+
+LibraryDescription load_version(const std::string& version, const std::string& text, Notices* notices = nullptr) {
+    const Folder folder;
+    folder.write("triangle.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    folder.write("grey.pfm", std::string("PF\n1 1\n-1.0\n") + std::string("\0\0\0?\0\0\0?\0\0\0?", 12));
+    return load_mitsuba(folder.write("room.xml", "<scene version=\"" + version + "\">\n" + text + "</scene>"),
+                        MitsubaOptions{.notices = notices});
+}
+
+/// A scene of version 0.6.0.
+LibraryDescription old(const std::string& text) { return load_version("0.6.0", text); }
+
+LibraryBsdf old_bsdf(const std::string& text) {
+    const auto result = old("<shape type=\"rectangle\">" + text + "</shape>");
+    return result.materials.at(result.shapes.at(0).material).bsdf;
+}
+
+/// The texture of the reflectance, with these parameters.
+Texture old_texture(const std::string& type, const std::string& inside) {
+    const auto result = old("<shape type=\"rectangle\"><bsdf type=\"mask\"><texture name=\"opacity\" type=\"" + type +
+                            "\">" + inside + "</texture><bsdf type=\"diffuse\"/></bsdf></shape>");
+    return std::get<Mask>(*result.materials.at(result.shapes.at(0).material).layer).opacity;
+}
+
+}  // namespace
+
+TEST_CASE("names in camel case become those of Mitsuba 3") {
+    using detail::with_underscores;
+    for (const auto& [from, to] :
+         std::map<std::string, std::string>{{"toWorld", "to_world"},
+                                            {"intIOR", "int_ior"},
+                                            {"fovAxis", "fov_axis"},
+                                            {"alphaU", "alpha_u"},
+                                            {"sigmaA", "sigma_a"},
+                                            {"principalPointOffsetX", "principal_point_offset_x"},
+                                            {"reflectance", "reflectance"},
+                                            {"p0", "p0"},
+                                            {"IOR", "IOR"},
+                                            {"", ""}})
+        CHECK(with_underscores(from) == to);
+}
+
+TEST_CASE("a scene of version 0.6 is read in the words of 3") {
+    Notices notices;
+    const auto result = load_version(
+        "0.6.0",
+        "<integrator type=\"path\"><integer name=\"maxDepth\" value=\"7\"/><integer name=\"rrDepth\" value=\"3\"/>"
+        "<boolean name=\"strictNormals\" value=\"true\"/></integrator>"
+        "<sensor type=\"thinlens\"><float name=\"apertureRadius\" value=\"0.5\"/><float name=\"focusDistance\" "
+        "value=\"4\"/>"
+        "<float name=\"fov\" value=\"30\"/><string name=\"fovAxis\" value=\"y\"/><float name=\"nearClip\" value=\"2\"/>"
+        "<float name=\"shutterOpen\" value=\"0\"/>"
+        "<transform name=\"toWorld\"><lookAt origin=\"1 2 3\" target=\"1 2 4\" up=\"0 1 0\"/></transform>"
+        "<sampler type=\"ldsampler\"><integer name=\"sampleCount\" value=\"128\"/></sampler>"
+        "<film type=\"ldrfilm\"><integer name=\"width\" value=\"64\"/><string name=\"pixelFormat\" value=\"rgb\"/>"
+        "<boolean name=\"highQualityEdges\" value=\"true\"/><float name=\"gamma\" value=\"2.2\"/></film></sensor>"
+        "<shape type=\"obj\"><string name=\"filename\" value=\"triangle.obj\"/><boolean name=\"faceNormals\" "
+        "value=\"true\"/>"
+        "<boolean name=\"flipNormals\" value=\"true\"/><transform name=\"toWorld\"><rotate y=\"2\" angle=\"180\"/>"
+        "</transform></shape>"
+        "<luminaire type=\"constant\"><spectrum name=\"radiance\" value=\"1 2 3\"/><float name=\"samplingWeight\" "
+        "value=\"2\"/></luminaire>",
+        &notices);
+    CHECK(result.max_depth == 7);
+    CHECK(result.rr_depth == 3);
+    CHECK(result.samples == 128);
+    CHECK(result.camera.aperture_radius == 0.5);
+    CHECK(result.camera.focus_distance == 4);
+    CHECK(result.camera.fov_axis == CameraDescription::FovAxis::y);
+    CHECK(result.camera.near_clip == 2);
+    CHECK(result.camera.to_world[3] == glm::dvec4(1, 2, 3, 1));
+    CHECK(result.camera.to_world[2] == glm::dvec4(0, 0, 1, 0));
+    CHECK(result.film.width == 64);
+    CHECK(result.sources.at(0).source.get<EnvironmentSource>()->radiance == Rgb(1, 2, 3));
+    const auto& mesh = std::get<Mesh>(result.shapes.at(0).geometry);
+    CHECK(glm::length(mesh.positions[1] - DVec3(-1, 0, 0)) < 1e-12);
+    REQUIRE(notices.size() == 1);
+    CHECK(contains(notices[0], "room.xml: is upgraded from version 0.6.0 of the format"));
+    // The same words in a file of version 3 mean nothing.
+    CHECK(contains(message_of([&] {
+                       load_version("3.0.0",
+                                    "<sensor type=\"perspective\"><transform name=\"toWorld\"/>"
+                                    "</sensor>");
+                   }),
+                   "room.xml:2: <sensor type=\"perspective\">: unknown parameter \"toWorld\""));
+}
+
+TEST_CASE("surface models of version 0.6") {
+    CHECK(std::get<Lambert>(old_bsdf("<bsdf type=\"lambertian\"><srgb name=\"diffuseReflectance\" "
+                                     "value=\"#ffffff\"/></bsdf>"))
+              .reflectance == Rgb(1));
+    CHECK(std::get<Dielectric>(old_bsdf("<bsdf type=\"dielectric\"><float name=\"intIOR\" value=\"2\"/><float "
+                                        "name=\"extIOR\" value=\"1\"/><string name=\"distribution\" "
+                                        "value=\"ggx\"/></bsdf>"))
+              .eta == 2);
+    const auto rough =
+        std::get<RoughDielectric>(old_bsdf("<bsdf type=\"roughglass\"><float name=\"alphaU\" value=\"0.2\"/><float "
+                                           "name=\"alphaV\" value=\"0.3\"/></bsdf>"));
+    CHECK(rough.alpha_u == 0.2f);
+    CHECK(rough.alpha_v == 0.3f);
+    // A metal is copper unless it has a name; "none" is a mirror.
+    CHECK(std::get<Conductor>(old_bsdf("<bsdf type=\"conductor\"/>")).eta == metal_by_name("Cu")->eta);
+    CHECK(
+        std::get<Conductor>(old_bsdf("<bsdf type=\"conductor\"><string name=\"material\" value=\"none\"/></bsdf>")).k ==
+        Rgb(1));
+    CHECK(std::get<Conductor>(old_bsdf("<bsdf type=\"mirror\"/>")).eta == Rgb(0));
+    CHECK(std::get<RoughConductor>(old_bsdf("<bsdf type=\"roughmetal\"/>")).eta == metal_by_name("Cu")->eta);
+    const auto in_water = std::get<Conductor>(
+        old_bsdf("<bsdf type=\"conductor\"><rgb name=\"eta\" value=\"2\"/><rgb name=\"k\" value=\"4\"/><float "
+                 "name=\"extEta\" value=\"2\"/></bsdf>"));
+    CHECK(in_water.eta == Rgb(1));
+    CHECK(in_water.k == Rgb(2));
+    // What reflects more than all light is darkened as a whole.
+    const auto phong =
+        std::get<ModifiedPhong>(old_bsdf("<bsdf type=\"phong\"><rgb name=\"diffuseReflectance\" value=\"1.0\"/><rgb "
+                                         "name=\"specularReflectance\" value=\"0.5\"/></bsdf>"));
+    CHECK(std::abs(phong.diffuse_reflectance.x - 0.66f) < 1e-6f);
+    CHECK(std::abs(phong.specular_reflectance.x - 0.33f) < 1e-6f);
+}
+
+TEST_CASE("a mixture is a chain of blends") {
+    const auto result =
+        old("<shape type=\"rectangle\"><bsdf type=\"mixturebsdf\"><string name=\"weights\" value=\"0.2, 0.3, 0.5\"/>"
+            "<bsdf type=\"diffuse\"/><bsdf type=\"conductor\"/><bsdf type=\"dielectric\"/></bsdf></shape>");
+    const auto& outer = std::get<Blend>(*result.materials[result.shapes[0].material].layer);
+    CHECK(outer.weight.most() == Rgb(0.5f));
+    CHECK(std::holds_alternative<Dielectric>(result.materials[outer.second].bsdf));
+    const auto& inner = std::get<Blend>(*result.materials[outer.first].layer);
+    CHECK(std::abs(inner.weight.most().x - 0.6f) < 1e-6f);
+    CHECK(std::holds_alternative<Lambert>(result.materials[inner.first].bsdf));
+    CHECK(std::holds_alternative<Conductor>(result.materials[inner.second].bsdf));
+}
+
+TEST_CASE("textures of version 0.6") {
+    // As Mitsuba 3.9 upgrades them: the offset comes first.
+    const Texture scaled = old_texture("checkerboard",
+                                       "<float name=\"uscale\" value=\"4\"/><float name=\"vscale\" value=\"2\"/><float "
+                                       "name=\"uoffset\" value=\"0.5\"/>");
+    const Texture plain = old_texture("checkerboard", "");
+    CHECK(plain(Vec2(0.2f, 0.1f)) != plain(Vec2(0.7f, 0.1f)));
+    CHECK(scaled(Vec2(0.05f, 0.05f)) == plain(Vec2(0.2f, 0.1f)));
+    CHECK(scaled(Vec2(0.15f, 0.05f)) == plain(Vec2(0.6f, 0.1f)));
+    CHECK(scaled(Vec2(0.05f, 0.3f)) == plain(Vec2(0.2f, 0.6f)));
+    const std::string file = "<string name=\"filename\" value=\"grey.pfm\"/>";
+    for (const char* filter : {"ewa", "trilinear", "bilinear", "nearest"})
+        CHECK(old_texture("bitmap", file + "<string name=\"filterType\" value=\"" + filter + "\"/>").most() ==
+              Rgb(0.5f));
+    CHECK(old_texture("bitmap", file + "<float name=\"gamma\" value=\"1\"/><float name=\"maxAnisotropy\" value=\"9\"/>")
+              .most() == Rgb(0.5f));
+    CHECK(contains(message_of([&] { old_texture("bitmap", file + "<float name=\"gamma\" value=\"1.8\"/>"); }),
+                   "room.xml:2: <texture type=\"bitmap\">: unknown parameter \"gamma\""));
+
+    const auto bump = old(
+        "<shape type=\"rectangle\"><bsdf type=\"bumpmap\"><texture type=\"scale\"><float name=\"scale\" value=\"3\"/>"
+        "<texture type=\"checkerboard\"/></texture><bsdf type=\"diffuse\"/></bsdf></shape>");
+    CHECK(std::get<BumpMap>(*bump.materials[bump.shapes[0].material].layer).scale == 3);
+}
