@@ -19,7 +19,7 @@ using Triangle = std::array<std::uint32_t, 3>;
 /// What a file has, by name.
 struct Layout {
     bool ascii = false, big_endian = false, wide = false;  ///< wide: double instead of float, int instead of uchar
-    bool normals = false, uvs = false, extra = false, quads = false;
+    bool normals = false, uvs = false, extra = false, quads = false;  ///< quads: besides triangles
 };
 
 struct File {
@@ -49,7 +49,7 @@ public:
         if (layout_.uvs)
             for (const char* name : {"v", "u"}) text("property float " + std::string(name) + "\n");
         const std::uint32_t cells = (rows - 1) * (columns - 1);
-        text("element face " + std::to_string(layout_.quads ? cells : 2 * cells) + "\n");
+        text("element face " + std::to_string(layout_.quads ? cells + (cells + 2) / 3 : 2 * cells) + "\n");
         if (layout_.extra) text("property short group\n");
         text(layout_.wide ? "property list int uint vertex_index\n" : "property list uchar int vertex_index\n");
         if (layout_.extra) text("property float area\n");
@@ -57,7 +57,7 @@ public:
         for (std::uint32_t i = 0; i < rows * columns; ++i) vertex(i % columns, i / columns);
         for (std::uint32_t i = 0; i < cells; ++i) {
             const std::uint32_t a = i / (columns - 1) * columns + i % (columns - 1), d = a + columns;
-            if (layout_.quads) {
+            if (layout_.quads && i % 3 != 0) {
                 face({a, a + 1, d + 1, d});
             } else {
                 face({a, a + 1, d + 1});
