@@ -32,7 +32,8 @@ inline std::optional<std::filesystem::path> find_in_any_case(std::filesystem::pa
 }
 
 /// Finds a file by the name that another file gives it, relative to the first of `folders` that has it: as it is, with
-/// slashes for backslashes, in quotes, in other letters' case, and at last without the folders that it is said to be in.
+/// slashes for backslashes, in quotes, in other letters' case, and at last without the folders that it is said to be
+/// in.
 inline std::optional<std::filesystem::path> find_file(std::string_view text,
                                                       const std::vector<std::filesystem::path>& folders) {
     text = trimmed(text);

@@ -11,9 +11,9 @@
 namespace lightswitch {
 
 /// Reads a Wavefront OBJ file with its materials as a scene: a shape for each material in use, in the order in which
-/// the file names them. docs/scene-files.md says what becomes of the statements of material files. Where a name leads to
-/// no material, surfaces are grey. Surfaces are the same from both sides, but for glass and for light, which leaves the
-/// front only. A camera that sees everything is added, and a soft sky when nothing shines, and `notices` tells.
+/// the file names them. docs/scene-files.md says what becomes of the statements of material files. Where a name leads
+/// to no material, surfaces are grey. Surfaces are the same from both sides, but for glass and for light, which leaves
+/// the front only. A camera that sees everything is added, and a soft sky when nothing shines, and `notices` tells.
 ///
 /// Throws `Error` with file and line as `load_obj` does, and for malformed numbers in material files; missing and
 /// damaged images and missing material files are only noticed. Thread safe.
