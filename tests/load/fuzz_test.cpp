@@ -4,6 +4,7 @@
 #include "load/files.hpp"
 
 #include <lightswitch/load/mitsuba.hpp>
+#include <lightswitch/load/obj_scene.hpp>
 
 using namespace lightswitch;
 using namespace lightswitch::test;
@@ -13,6 +14,18 @@ namespace {
 const std::string obj =
     "# box\nv 0 0 0\nv 1 0 0.5\nv 1 1 0\nv 0 1 -2e-3\nvt 0 0\nvt 1 1\nvn 0 0 1\nvn 0 0.6 0.8\no thing\n"
     "f 1/1/1 2/2/1 3/1/2 4/2/2\nf -4//-2 -3//1 -2//2\nf 1/1/1 3/1/2 \\\n 4/2/1\n";
+
+const std::string obj_with_materials =
+    "mtllib a.mtl b.mtl\nv 0 0 0\nv 1 0 0.5\nv 1 1 0\nv 0 1 -2e-3\nvt 0 0\nvt 1 1\nf 1/1 2/2 3/1\nusemtl one\nf "
+    "2 3 4\nusemtl two\nf 1 3 4\nf 1 2 4\nusemtl one\nf 1 2 3 4\nusemtl three\nf 4 3 2 1\nusemtl four\nf 1 2 3\n";
+
+const std::string mtl =
+    "# materials\nnewmtl one\nKa 0 0 0\nKd 0.8 0.7 0.6\nKs 0.5 0.5 0.5\nNs 96.078431\nNi 1.45\nd 0.5\nillum "
+    "2\nmap_Kd -s 2 2 1 -o 0.5 0 0 -clamp on -mm 0.1 0.5 a.pfm\nmap_d a.pfm\nbump -bm 0.3 a.pfm\n\nnewmtl two\r\nKd "
+    "0\r\nKs 0.9\r\nTf 0.9 1 0.9\r\nNi 1.5\r\nTr 0.9\r\nillum 7\r\nnorm a.pfm\nnewmtl three\nKe 3 2 1\nmap_Ke "
+    "a.pfm\nPr 0.3\nPm 1\nmap_Pr \"b c.png\"\nmap_Pm .\\A.PFM\nnewmtl four\nKd 0.3\nKs 0.3\nillum 3\n";
+
+const std::string pfm = "PF\n1 1\n-1\n" + std::string("\0\0\0\x3f\0\0\x80\x3e\0\0\x80\x3f", 12);
 
 const std::string mixed_obj =
     "\xef\xbb\xbf"
@@ -87,5 +100,17 @@ TEST_CASE("changed files load or are refused") {
     both(fuzz(faces_first_ply, "a.ply", 700, [](const auto& path) { load_ply(path); }), 700);
     both(fuzz(ascii_ply, "a.ply", 500, [](const auto& path) { load_ply(path); }), 500);
     both(fuzz(binary_ply, "a.ply", 500, [](const auto& path) { load_ply(path); }), 500);
+    const auto with_materials = [](const std::filesystem::path& path) {
+        const auto beside = [&](const char* name, const std::string& text) {
+            const auto other = path.parent_path() / name;
+            if (!std::filesystem::exists(other)) std::ofstream(other, std::ios::binary) << text;
+            return other;
+        };
+        beside("a.pfm", pfm);
+        beside("a.mtl", mtl);
+        detail::check(load_obj_scene(beside("a.obj", obj_with_materials)));
+    };
+    both(fuzz(mtl, "a.mtl", 2000, with_materials), 2000);
+    both(fuzz(obj_with_materials, "a.obj", 700, with_materials), 700);
     both(fuzz(xml, "a.xml", 1000, [](const auto& path) { load_mitsuba(path); }), 1000);
 }

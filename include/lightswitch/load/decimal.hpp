@@ -14,7 +14,7 @@ namespace lightswitch::detail {
 /// The double nearest to digits * 10^exponent (of two, the even one), where that is quickly told; NaN elsewhere.
 ///
 /// What is exact in double takes one division that rounds once (Clinger, "How to read floating point numbers
-/// accurately", 1990). Otherwise the quotient is made in integers, with its remainder as the bit that tells how to
+/// accurately", 1990). Otherwise the quotient is made in integers, with its remainder as a last bit that tells how to
 /// round.
 inline double nearest_double(std::uint64_t digits, int exponent) {
     static constexpr auto powers = [] {

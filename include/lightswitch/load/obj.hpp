@@ -3,8 +3,8 @@
 // Wavefront OBJ: triangles and polygons with optional vertex normals.
 
 #include <lightswitch/load/mesh_file.hpp>
-#include <lightswitch/load/number.hpp>
 #include <lightswitch/load/obj_vertices.hpp>
+#include <lightswitch/load/obj_words.hpp>
 #include <lightswitch/load/polygon.hpp>
 #include <lightswitch/load/text.hpp>
 #include <lightswitch/load/text_file.hpp>
@@ -58,14 +58,11 @@ public:
         TextFile file(path_, max_mesh_bytes);
         std::string_view text = without_byte_order_mark(file.next());
         for (; !text.empty(); text = file.next()) {
-            end_ = text.data() + text.size();
-            while (!text.empty()) {
-                origin_.line += skipped_lines_ + 1;
-                skipped_lines_ = 0;
-                if (const char* const end = usual_statement(text.data()))
-                    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-                else statement(next_statement(text));
-            }
+            const double pieces_to_come =
+                static_cast<double>(file.rest()) / static_cast<double>(std::max(text.size(), std::size_t(1) << 16));
+            const Sizes before = sizes();
+            read_piece(text);
+            make_room(before, pieces_to_come);
         }
         origin_.line = 0;
         if (contents_.mesh.triangles.empty()) fail(origin_, "contains no faces");
@@ -76,40 +73,58 @@ public:
     }
 
 private:
+    void read_piece(std::string_view text) {
+        end_ = text.data() + text.size();
+        while (!text.empty()) {
+            origin_.line += skipped_lines_ + 1;
+            skipped_lines_ = 0;
+            if (const char* const end = usual_statement(text.data()))
+                text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+            else statement(next_statement(text));
+        }
+    }
+
+    using Sizes = std::array<std::size_t, 5>;
+    Sizes sizes() const {
+        return {positions_.size(), texture_coordinates_.size(), normals_.size(), contents_.mesh.positions.size(),
+                contents_.mesh.triangles.size()};
+    }
+
+    /// Lets lists that are nearly full have room for the rest of the file, if that goes on like the last piece: growing
+    /// by and by would copy them. Room that is not used takes no memory.
+    void make_room(const Sizes& before, double pieces_to_come) {
+        const auto reserve = [&](auto& list, std::size_t size_before) {
+            const std::size_t added = list.size() - size_before;
+            if (list.capacity() - list.size() < 2 * added)
+                list.reserve(list.size() +
+                             static_cast<std::size_t>(1.1 * static_cast<double>(added) * (pieces_to_come + 1)));
+        };
+        reserve(positions_, before[0]);
+        reserve(texture_coordinates_, before[1]);
+        reserve(normals_, before[2]);
+        reserve(contents_.mesh.positions, before[3]);
+        reserve(contents_.mesh.triangles, before[4]);
+        vertices_.reserve(contents_.mesh.positions.capacity());
+    }
+
     // --- statements as nearly all are written: read fast, and otherwise left alone
 
-    /// Where the line at `text` ends if it is a `v`, `vn`, `vt` or `f` without anything special, which it then takes
-    /// in; otherwise null, and `statement` has the word.
+    /// Takes in the line at `text` if it is a `v`, `vn`, `vt` or `f` without anything special, and returns where the
+    /// next one begins; otherwise null, and `statement` has the word.
     const char* usual_statement(const char* text) {
         if (text[0] == 'f') return is_blank(text[1]) ? usual_face(text + 2) : nullptr;
         if (text[0] != 'v') return nullptr;
         DVec3 numbers;
         const char* end = nullptr;
         if (is_blank(text[1])) {
-            if ((end = usual_vector(text + 2, 3, 7, numbers))) positions_.push_back(numbers);
+            if ((end = read_usual_vector(text + 2, end_, 3, 7, numbers))) positions_.push_back(numbers);
         } else if (text[1] == 'n' && is_blank(text[2])) {
-            if ((end = usual_vector(text + 3, 3, 3, numbers))) normals_.push_back(numbers);
+            if ((end = read_usual_vector(text + 3, end_, 3, 3, numbers))) normals_.push_back(numbers);
         } else if (text[1] == 't' && is_blank(text[2])) {
-            if ((end = usual_vector(text + 3, 1, 3, numbers))) texture_coordinates_.emplace_back(numbers.x, numbers.y);
+            if ((end = read_usual_vector(text + 3, end_, 1, 3, numbers)))
+                texture_coordinates_.emplace_back(numbers.x, numbers.y);
         }
         return end;
-    }
-
-    static const char* after_line_end(const char* text) { return text + (text[0] == '\r' && text[1] == '\n' ? 2 : 1); }
-
-    const char* usual_vector(const char* text, int fewest, int most, DVec3& result) const {
-        std::array<double, 7> numbers{};
-        for (int count = 0;; ++count) {
-            while (is_blank(*text)) ++text;
-            if (is_line_end(*text)) {
-                if (count < fewest) return nullptr;
-                result = {numbers[0], numbers[1], numbers[2]};
-                return after_line_end(text);
-            }
-            if (count == most) return nullptr;
-            text = read_simple_number(text, end_, numbers[static_cast<std::size_t>(count)]);
-            if (text == nullptr || !(is_blank(*text) || is_line_end(*text))) return nullptr;
-        }
     }
 
     const char* usual_face(const char* text) {
@@ -118,28 +133,16 @@ private:
             while (is_blank(*text)) ++text;
             if (is_line_end(*text)) break;
             ObjCorner corner;
-            text = usual_index(text, positions_.size(), corner.position);
+            text = read_usual_index(text, positions_.size(), corner.position);
             if (text != nullptr && *text == '/' && *++text != '/')
-                text = usual_index(text, texture_coordinates_.size(), corner.uv);
-            if (text != nullptr && *text == '/') text = usual_index(text + 1, normals_.size(), corner.normal);
+                text = read_usual_index(text, texture_coordinates_.size(), corner.uv);
+            if (text != nullptr && *text == '/') text = read_usual_index(text + 1, normals_.size(), corner.normal);
             if (text == nullptr || !(is_blank(*text) || is_line_end(*text))) return nullptr;
             corners_.push_back(vertex(corner));
         }
         if (corners_.size() < 3) return nullptr;
         add_polygon();
         return after_line_end(text);
-    }
-
-    static const char* usual_index(const char* text, std::size_t size, std::uint32_t& result) {
-        const bool backwards = *text == '-';
-        if (backwards) ++text;
-        std::size_t number = 0;
-        const char* const begin = text;
-        for (; *text >= '0' && *text <= '9' && text - begin < 10; ++text)
-            number = 10 * number + static_cast<std::size_t>(*text - '0');
-        if (number == 0 || number > size) return nullptr;
-        result = static_cast<std::uint32_t>(backwards ? size - number : number - 1);
-        return text;
     }
 
     // --- statements of all kinds
@@ -250,7 +253,7 @@ private:
     }
 
     /// The number of the mesh's vertex for a corner, which is made when it comes up first.
-    std::uint32_t vertex(ObjCorner corner) {
+    [[gnu::always_inline]] std::uint32_t vertex(ObjCorner corner) {
         if (use_ == FileNormals::ignore) corner.normal = ObjCorner::none;
         const auto [number, is_new] = vertices_.number(corner, positions_.size());
         if (is_new) {

@@ -91,9 +91,8 @@ private:
         Textured<B> textured(model);
         for (const auto& [parameter, texture] : textures)
             if (texture) textured.set(parameter, *texture);
-        LibraryBsdf bsdf = model;
-        if (!textured.constant()) bsdf = textured;
-        const std::size_t number = scene_.add(std::move(bsdf), origin);
+        const bool is_plain = textured.constant() != nullptr;
+        const std::size_t number = scene_.add(is_plain ? LibraryBsdf(model) : LibraryBsdf(std::move(textured)), origin);
         scene_.materials[number].two_sided = !transmits_light(model);
         return number;
     }

@@ -45,6 +45,8 @@ public:
         return add(corner);
     }
 
+    void reserve(std::size_t count) { vertices_.reserve(count); }
+
     /// Frees what only `number` needs.
     void finish_numbers() {
         first_ = {};

@@ -43,6 +43,9 @@ public:
         return {buffer_.get(), used_};
     }
 
+    /// How many bytes are still to come.
+    std::size_t rest() const { return unread_ + size_ - used_; }
+
 private:
     void grow() {
         auto larger = std::make_unique_for_overwrite<char[]>(2 * capacity_ + 1);
