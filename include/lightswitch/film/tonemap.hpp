@@ -47,9 +47,9 @@ inline Rgb expose(const Rgb& radiance, float stops) {
 }
 
 /// Stops that make the image's middle brightness a middle grey: the geometric mean of the pixels' luminance becomes
-/// 0.18 (Reinhard et al., "Photographic Tone Reproduction for Digital Images", 2002, section 3). Pixels that are black or
-/// not finite do not count, nor do the darkest and the brightest percent of the others, which may be noise. To a tenth
-/// of a stop, so that what a program prints says all of it; 0 for an image in which nothing counts.
+/// 0.18 (Reinhard et al., "Photographic Tone Reproduction for Digital Images", 2002, section 3). Pixels that are black
+/// or not finite do not count, nor do the darkest and the brightest percent of the others, which may be noise. To a
+/// tenth of a stop, so that what a program prints says all of it; 0 for an image in which nothing counts.
 float auto_exposure(const Image& image);
 
 /// 8-bit sRGB of linear RGB in [0,1], rounded to the nearest.

@@ -1,7 +1,7 @@
 #pragma once
 
-// A scene file's XML tree, with what Mitsuba adds to XML: `<include>`, `<default>` values and `$name`, ids and `<alias>`,
-// `<path>`, and words of older versions. Of all headers this one and that of the upgrade include pugixml.
+// A scene file's XML tree, with what Mitsuba adds to XML: `<include>`, `<default>` values and `$name`, ids and
+// `<alias>`, `<path>`, and words of older versions. Of all headers this one and that of the upgrade include pugixml.
 
 #include <lightswitch/core/file.hpp>
 #include <lightswitch/load/mitsuba_upgrade.hpp>

@@ -34,8 +34,8 @@ public:
         std::string text;
         std::vector<std::string> unknown;  ///< names without a value, which stay as they are
     };
-    /// As in Mitsuba, the longest known name that fits is meant, and `\$` is a dollar sign. Throws when values take more
-    /// than 16 MiB in all.
+    /// As in Mitsuba, the longest known name that fits is meant, and `\$` is a dollar sign. Throws when values take
+    /// more than 16 MiB in all.
     Replaced replaced(std::string_view text);
 
 private:

@@ -30,8 +30,8 @@ Mesh cube(const DMat4& to_world = DMat4(1));
 /// The unit disk in z = 0 whose front looks along +z, under `to_world`: a fan of 256 triangles with the area of the
 /// disk. Texture coordinates are the distance from its centre and the angle, to 1/512 of a turn.
 Mesh disk(const DMat4& to_world = DMat4(1));
-/// The side, outwards, of the cylinder of radius 1 around z from 0 to 1, under `to_world`: 256 flat sides with the area of
-/// the round one and its normals. Texture coordinates are the angle and the height.
+/// The side, outwards, of the cylinder of radius 1 around z from 0 to 1, under `to_world`: 256 flat sides with the area
+/// of the round one and its normals. Texture coordinates are the angle and the height.
 Mesh cylinder(const DMat4& to_world = DMat4(1));
 /// A flat four-sided polygon with corners counter-clockwise as seen from the front, and texture coordinates from (0, 0)
 /// at the first one to (1, 1) at the third.
