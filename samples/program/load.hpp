@@ -30,8 +30,8 @@ struct LoadedScene {
 /// Whether there are warnings of stand-ins, or the summary alone tells of them.
 enum class StandIns { warn, keep };
 
-/// Reads and builds the scene, warns of stand-ins, and unless `quiet` of what its files hold that is skipped or guessed.
-/// Throws `Error` for whatever is wrong with it; that of a strict reading says how to go on.
+/// Reads and builds the scene, warns of stand-ins, and unless `quiet` of what its files hold that is skipped or
+/// guessed. Throws `Error` for whatever is wrong with it; that of a strict reading says how to go on.
 LoadedScene load_scene(const SceneOptions& options, bool quiet = false, StandIns tell = StandIns::warn);
 
 /// How long paths may become: as the command line says, or else the scene, or else as usual.

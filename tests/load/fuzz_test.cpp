@@ -69,6 +69,22 @@ const std::string xml =
     "<point name=\"position\" value=\"1\"/></emitter>\n<alias id=\"a\" as=\"b\"/><shape type=\"disk\"><ref "
     "id=\"b\"/></shape></scene>\n";
 
+const std::string old_xml =
+    "<scene version=\"0.5.0\"><sensor type=\"perspective\"><transform name=\"toWorld\"><lookAt origin=\"0,1,4\" "
+    "target=\"0,0,0\" up=\"0,1,0\"/></transform></sensor><bsdf type=\"bumpmap\" id=\"b\"><texture type=\"scale\">"
+    "<float name=\"scale\" value=\"2\"/><texture type=\"checkerboard\"><float name=\"uscale\" value=\"4\"/><float "
+    "name=\"voffset\" value=\"4\"/></texture></texture><bsdf type=\"phong\"><srgb name=\"diffuseReflectance\" "
+    "value=\"#abcdef\"/></bsdf></bsdf><shape type=\"cylinder\"><point name=\"p0\" x=\"1\" y=\"2\" z=\"3\"/><ref "
+    "id=\"b\"/></shape><shape type=\"disk\"><bsdf type=\"mixturebsdf\"><string name=\"weights\" value=\"0.5,0.5\"/>"
+    "<bsdf type=\"mask\"><bsdf type=\"conductor\"/></bsdf><bsdf type=\"twosided\"><ref id=\"b\"/></bsdf></bsdf>"
+    "</shape><luminaire type=\"constant\"><blackbody name=\"radiance\" temperature=\"5000K\"/></luminaire></scene>\n";
+
+/// A lenient reading, which is fit to be built.
+void load_leniently(const std::filesystem::path& path) {
+    const auto scene = load_mitsuba(path, MitsubaOptions{.strictness = Strictness::lenient});
+    CHECK_NOTHROW(detail::check(scene));
+}
+
 /// Loads `count` changed versions of `text`, and returns how many of them loaded.
 template <class Load>
 int fuzz(const std::string& text, const std::string& name, std::uint32_t count, const Load& load) {
@@ -113,4 +129,7 @@ TEST_CASE("changed files load or are refused") {
     both(fuzz(mtl, "a.mtl", 2000, with_materials), 2000);
     both(fuzz(obj_with_materials, "a.obj", 700, with_materials), 700);
     both(fuzz(xml, "a.xml", 1000, [](const auto& path) { load_mitsuba(path); }), 1000);
+    both(fuzz(old_xml, "a.xml", 1000, [](const auto& path) { load_mitsuba(path); }), 1000);
+    both(fuzz(xml, "a.xml", 1000, load_leniently), 1000);
+    both(fuzz(old_xml, "a.xml", 1000, load_leniently), 1000);
 }
