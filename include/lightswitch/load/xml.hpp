@@ -296,7 +296,8 @@ inline void XmlFile::identify(pugi::xml_node node, const std::string& id, pugi::
 inline void XmlFile::add_path(pugi::xml_node node) {
     check_attributes(node, {"value"});
     const std::filesystem::path path = locate(node, node.attribute("value").value());
-    if (!std::filesystem::is_directory(path)) fail(origin(node), quote(path.string()) + " is not a folder");
+    if (std::error_code error; !std::filesystem::is_directory(path, error))
+        fail(origin(node), quote(path.string()) + " is not a folder");
     paths_of_file_.insert(paths_of_file_.begin(), path);
 }
 
