@@ -16,7 +16,9 @@ namespace {
 /// What a ray from `origin` along `direction` (scene units) meets has these texture coordinates.
 Vec2 uv_of(std::variant<Mesh, Sphere> shape, const DVec3& origin, const DVec3& direction) {
     LibraryDescription description;
-    description.add(std::move(shape), description.add(Textured<Lambert>()));
+    // Coordinates are found where the material asks for them.
+    const auto pattern = Textured<Lambert>().set("reflectance", Texture(Checkerboard{}));
+    description.add(std::move(shape), description.add(pattern));
     const auto scene = build_scene<TexturedBsdfs, AllLights>(description);
     const auto hit = scene.intersect({.origin = Vec3(scene.space().point(origin)), .direction = Vec3(direction)});
     REQUIRE(hit);
