@@ -9,6 +9,10 @@
 #include <lightswitch/load/mesh_file.hpp>
 #include <lightswitch/scene/library.hpp>
 
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+
 namespace lightswitch {
 
 /// Reads the scene of a glTF 2.0 file, `.gltf` or `.glb`: that which the file names, or its first; with the files that
@@ -177,21 +181,23 @@ private:
         if (places.empty()) return;
         std::vector<Shape> shapes = read_shapes(mesh);
         if (shapes.empty()) return;
-        const auto squeezed = [&](const Place& place) { return squeeze(place.to_world) > instances; };
-        const auto copied = places.size() == 1
-                                ? places.begin()
-                                : std::stable_partition(places.begin(), places.end(), std::not_fn(squeezed));
-        for (auto place = copied; place != places.end(); ++place)
+        const auto group = scene_.groups.size();
+        std::vector<LibraryDescription::Instance> placed;
+        for (const Place& place : places) {
+            if (places.size() > 1 && squeeze(place.to_world) <= instances) {
+                placed.push_back({group, place.to_world, place.origin});
+                continue;
+            }
             for (const Shape& shape : shapes) {
                 const Mesh& local = std::get<Mesh>(shape.geometry);
-                if (places.size() > 1) meshes_.spend(3 * local.triangles.size(), place->origin);
-                scene_.shapes.push_back({local.transformed(place->to_world), shape.material, shape.emission,
+                if (places.size() > 1) meshes_.spend(3 * local.triangles.size(), place.origin);
+                scene_.shapes.push_back({local.transformed(place.to_world), shape.material, shape.emission,
                                          shape.origin, shape.emission_texture});
             }
-        if (copied == places.begin()) return;
+        }
+        if (placed.empty()) return;
         scene_.groups.push_back({std::move(shapes), file_.origin("meshes", static_cast<std::size_t>(mesh))});
-        for (auto place = places.begin(); place != copied; ++place)
-            scene_.instances.push_back({scene_.groups.size() - 1, place->to_world, place->origin});
+        std::move(placed.begin(), placed.end(), std::back_inserter(scene_.instances));
     }
 
     /// The primitives of a mesh, in its own coordinates.
