@@ -1,8 +1,10 @@
 // Memory of large meshes, and the price of instances.
 //
-//   geometry [MILLION_TRIANGLES]    bytes per triangle that the scene and Embree hold (10 million triangles): flat, with
-//                                   normals, with texture coordinates; then 1000 instances of a mesh: bytes against
-//                                   the same written out, seconds to build, seconds to move one, and what rays cost
+//   geometry [MILLION_TRIANGLES]
+//
+// Bytes per triangle that the scene and Embree hold (10 million triangles): flat, with normals, with texture
+// coordinates; then 1000 instances of a mesh: bytes against the same written out, seconds to build, seconds to move
+// one, and what rays cost.
 
 #include <lightswitch/bsdf/lambert.hpp>
 #include <lightswitch/method/path_tracer_nee.hpp>

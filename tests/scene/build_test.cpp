@@ -176,16 +176,20 @@ TEST_CASE("build: a scene type without room for something says so") {
 }
 
 TEST_CASE("build: more materials or lights of one kind than can be numbered are refused") {
-    const std::size_t most = (std::size_t{1} << 27) - 1, most_materials = (std::size_t{1} << 26) - 1;
+    const std::size_t most = (std::size_t{1} << 27) - 1, most_materials = (std::size_t{1} << 24) - 1;
     const TypedIndex last(30, most);
     CHECK(last);
     CHECK(last.kind() == 30);
     CHECK(last.position() == most);
     for (const bool both : {false, true}) {
-        const MaterialIndex material(30, most_materials, both);
+        const std::size_t flags = both ? MaterialIndex::both_sides : MaterialIndex::varying;
+        const MaterialIndex material(30, most_materials, flags);
         CHECK(material.kind() == 30);
         CHECK(material.position() == most_materials);
         CHECK(material.two_sided() == both);
+        CHECK(material.varies() == !both);
+        CHECK(!material.lit_through());
+        CHECK(material.flags() == flags);
     }
     CHECK(TypedIndex::max_position == most);
     CHECK(MaterialIndex::max_position == most_materials);

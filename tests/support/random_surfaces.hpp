@@ -145,8 +145,8 @@ private:
     Random& random_;
 };
 
-/// A floor and a few objects of such materials, one of them in two instances, under a sky and a lamp with a texture, all
-/// so large that a path tracer finds them. 16 x 16 pixels.
+/// A floor and a few objects of such materials, one of them in two instances, under a sky and a lamp with a texture,
+/// all so large that a path tracer finds them. 16 x 16 pixels.
 inline LibraryDescription random_surfaces(std::uint32_t seed) {
     Random random(seed);
     LibraryDescription scene;
