@@ -89,6 +89,8 @@ TEST_CASE("integers are read up to 18 digits") {
     CHECK(read("0 1") == Result{0, 1});
     CHECK(read("12345678") == Result{12345678, 8});
     CHECK(read("123456789/2") == Result{123456789, 9});
+    CHECK(read(std::string_view("1234567890").substr(0, 2)) == Result{12, 2});
+    CHECK(read(std::string_view("1234567890").substr(0, 9)) == Result{123456789, 9});
     CHECK(read("999999999999999999") == Result{999999999999999999u, 18});
     CHECK(read("1000000000000000000") == Result{0, -1});
     CHECK(read("18446744073709551617") == Result{0, -1});

@@ -243,6 +243,11 @@ TEST_CASE("malformed PLY files are refused with the line") {
         {"ply\rformat ascii 1.0\relement vertex 1\rproperty float x\rproperty float y\rproperty float z\r"
          "end_header\r0 0\ry\r",
          "mesh.ply:9: vertex 0: \"y\" is not a finite number"},
+        {"ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float "
+         "z\n"
+         "element face 1\nproperty list char int vertex_index\nend_header\n" +
+             std::string(12, '\0') + '\x80' + std::string(512, '\0'),
+         "mesh.ply: face 0: a list cannot have the length -128"},
         // Counts that would ask for terabytes.
         {"ply\nformat ascii 1.0\nelement vertex 999999999999\nproperty float x\nproperty float y\nproperty float z\n" +
              faces + data,

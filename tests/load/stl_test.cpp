@@ -76,12 +76,14 @@ TEST_CASE("corners of an STL file are one vertex only when they are equal to the
     std::vector<Corners> strip;
     for (std::uint32_t i = 0; i < count; ++i)
         strip.push_back({DVec3(i, i % 2, 0), DVec3(i + 1, (i + 1) % 2, 0), DVec3(i + 2, i % 2, 0)});
+    strip.push_back(strip[0]);
     const Mesh long_mesh = parse(binary("", strip));
     REQUIRE(long_mesh.positions.size() == count + 2);
     bool in_order = true;
     for (std::uint32_t i = 0; i < count; ++i)
         in_order = in_order && long_mesh.triangles[i] == Triangle{i, i + 1, i + 2};
     CHECK(in_order);
+    CHECK(long_mesh.triangles.back() == Triangle{0, 1, 2});
 }
 
 TEST_CASE("text in an STL file may be written in capitals, with any white space, and hold several solids") {

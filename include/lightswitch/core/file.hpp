@@ -189,31 +189,27 @@ public:
     FileBytes(const std::filesystem::path& path, std::uintmax_t max_bytes) {
 #if LIGHTSWITCH_MAPS_FILES
         constexpr std::size_t large = std::size_t(1) << 20;
-        const detail::FileHandle file = detail::open_file(path, max_bytes, size_);
-        if (size_ >= large) mapped_ = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, ::fileno(file.get()), 0);
-        if (mapped_ != MAP_FAILED) return;
+        std::size_t size = 0;
+        const detail::FileHandle file = detail::open_file(path, max_bytes, size);
+        if (size >= large) {
+            void* const bytes = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, ::fileno(file.get()), 0);
+            if (bytes != MAP_FAILED) mapped_ = {static_cast<const char*>(bytes), size};
+        }
 #endif
-        read_ = read_file(path, max_bytes);
+        if (mapped_.empty()) read_ = read_file(path, max_bytes);
     }
     FileBytes(const FileBytes&) = delete;
     FileBytes& operator=(const FileBytes&) = delete;
-#if LIGHTSWITCH_MAPS_FILES
     ~FileBytes() {
-        if (mapped_ != MAP_FAILED) ::munmap(mapped_, size_);
-    }
-
-    std::string_view view() const {
-        return mapped_ != MAP_FAILED ? std::string_view(static_cast<const char*>(mapped_), size_) : read_;
-    }
-
-private:
-    void* mapped_ = MAP_FAILED;
-    std::size_t size_ = 0;
-#else
-    std::string_view view() const { return read_; }
-
-private:
+#if LIGHTSWITCH_MAPS_FILES
+        if (!mapped_.empty()) ::munmap(const_cast<char*>(mapped_.data()), mapped_.size());
 #endif
+    }
+
+    std::string_view view() const { return mapped_.empty() ? std::string_view(read_) : mapped_; }
+
+private:
+    std::string_view mapped_;
     std::string read_;
 };
 

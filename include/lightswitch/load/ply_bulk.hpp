@@ -35,8 +35,8 @@ std::size_t with_type(PlyType type, PlyHeader::Format format, const auto& f) {
     const auto known = []<class Number>(PlyType of) {
         if constexpr (std::is_same_v<Number, float>) return of == PlyType::float32;
         else if constexpr (std::is_same_v<Number, double>) return of == PlyType::float64;
-        else if constexpr (sizeof(Number) == 1) return of == PlyType::uint8 || of == PlyType::int8;
-        else return of == PlyType::uint32 || of == PlyType::int32;
+        else if constexpr (sizeof(Number) == 1) return of == PlyType::uint8;
+        else return of == PlyType::uint32 || of == PlyType::int32;  // negative ones are too large
     };
     std::size_t result = 0;
     const auto call = [&]<class Number>() {

@@ -164,16 +164,24 @@ private:
     }
 
     void expect(std::string_view wanted) {
-        const std::string found = keyword();
+        const std::string_view found = word();
+        if (found == wanted) return;
         if (found.empty()) fail(where_, "the file ends too early");
-        if (found != wanted) fail(where_, quote(found) + " instead of " + quote(wanted));
+        if (lower_case(found) != wanted) fail(where_, quote(found) + " instead of " + quote(wanted));
     }
 
     std::string keyword() { return lower_case(word()); }
 
     std::string_view word() {
-        pass(rest_.substr(0, rest_.find_first_not_of(" \t\r\n")));
-        return next_word(rest_);
+        const auto is_space = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; };
+        std::size_t begin = 0;
+        while (begin < rest_.size() && is_space(rest_[begin])) ++begin;
+        pass(rest_.substr(0, begin));
+        std::size_t end = 0;
+        while (end < rest_.size() && !is_space(rest_[end])) ++end;
+        const std::string_view result = rest_.substr(0, end);
+        rest_.remove_prefix(end);
+        return result;
     }
 
     /// Goes over the beginning of what is left. A line ends with LF, CRLF or CR.
