@@ -2,6 +2,8 @@
 
 // Decimal numbers rounded to the nearest double.
 
+#include <lightswitch/core/floating_point.hpp>
+
 #include <array>
 #include <bit>
 #include <cfloat>

@@ -2,6 +2,8 @@
 
 // The vertices of a mesh from an OBJ file, whose corners name position, texture coordinate and normal apart.
 
+#include <lightswitch/core/floating_point.hpp>
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
