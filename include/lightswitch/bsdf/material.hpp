@@ -66,7 +66,7 @@ bool has_dirac_lobe(const M& material) {
 /// A point on a surface of a scene in which materials differ from place to place, with the model that was found there.
 template <class... M>
 struct PlacedPoint : SurfacePoint {
-    Vec2 uv{0};                                  ///< where the model differs from place to place
+    Vec2 uv{0};
     Vec3 tangent{0};                             ///< where u grows, any length; 0 where nothing asks for it
     std::variant<Mapped<model_of<M>>...> model;  ///< by the kind of the material
 
