@@ -327,6 +327,33 @@ TEST_CASE("shape and primitive: numbers of what the centre of a pixel sees, what
     CHECK(identical(shape, render(scene, ShapeNumber{}, {.samples = 1}, {.seed = 5})));
 }
 
+TEST_CASE("shape and primitive: numbers of shapes in groups, the same in every instance") {
+    LibraryDescription description = looking_down();
+    const std::size_t grey = description.add(Lambert{});
+    description.add(quad({-9, -9, -5}, {9, -9, -5}, {9, 9, -5}, {-9, 9, -5}), grey);
+    description.add(Sphere{{0, 0, 0}, 0.3}, grey);
+    using Group = LibraryDescription::Group;
+    Group flat{.shapes = {}, .origin = {}}, round = flat;
+    flat.shapes.push_back({.geometry = rectangle(), .material = grey, .emission = {}, .origin = {}});
+    round.shapes.push_back({.geometry = rectangle(), .material = grey, .emission = {}, .origin = {}});
+    round.shapes.push_back({.geometry = Sphere{{0, 0, 1}, 0.9}, .material = grey, .emission = {}, .origin = {}});
+    description.groups = {flat, round};
+    const auto at = [](double x, double y) {
+        DMat4 m(0.5);
+        m[3] = glm::dvec4(x, y, 0, 1);
+        return m;
+    };
+    description.instances = {{0, at(-1.5, 1.5), {}}, {0, at(-1.5, -1.5), {}}, {1, at(1.5, 1.5), {}}};
+    const FullScene scene = build(description);
+    const Image shape = render(scene, ShapeNumber{}, {.samples = 1});
+    const Image primitive = render(scene, PrimitiveNumber{}, {.samples = 1});
+    std::set<std::pair<float, float>> found;
+    for (std::size_t i = 0; i < shape.pixels().size(); ++i)
+        found.insert({shape.pixels()[i].x, primitive.pixels()[i].x});
+    // The floor, the first and the second group's rectangle, and two spheres, of which the one in place is the first.
+    CHECK(found == std::set<std::pair<float, float>>{{1, 1}, {1, 2}, {2, 1}, {2, 2}, {3, 1}, {3, 2}, {4, 1}, {4, 2}});
+}
+
 TEST_CASE("several outputs at once are those that their methods make, for any threads") {
     LibraryDescription description = random_scene(3);
     description.film.width = 53;
@@ -380,7 +407,7 @@ struct CountingScene {
     const auto& camera() const { return inner.camera(); }
     const auto& film() const { return inner.film(); }
     const auto& space() const { return inner.space(); }
-    const auto& accelerator() const { return inner.accelerator(); }
+    auto identify(const Ray& ray) const { return inner.identify(ray); }
     const std::string& name() const { return inner.name(); }
     const std::string& camera_id() const { return inner.camera_id(); }
 };

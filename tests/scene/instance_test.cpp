@@ -250,6 +250,12 @@ TEST_CASE("instance: what is impossible is refused with a reason") {
     DMat4 flat(1);
     flat[2] = glm::dvec4(0);
     CHECK(message_of([&] { good.with_instance(0, flat); }).find("has no inverse") != std::string::npos);
+    // All of these have an inverse of nothing but NaN.
+    DMat4 line = flat, point = flat;
+    line[1] = glm::dvec4(2, 0, 0, 0);
+    point[0] = point[1] = glm::dvec4(0);
+    for (const DMat4& m : {line, point})
+        CHECK(message_of([&] { good.with_instance(0, m); }).find("has no inverse") != std::string::npos);
 
     const auto refused = [&](const auto& change) {
         LibraryDescription changed = balls(3, false);

@@ -44,18 +44,14 @@ struct Mapped : B {
 private:
     [[gnu::noinline]] BsdfValue mapped_value(const Vec3& wo, const Vec3& wi, Transport transport) const {
         const bool from_camera = transport == Transport::radiance;
-        BsdfValue result;
         const bool flipped = is_flipped(from_camera ? wo : wi);
-        if (keeps(wo, flipped) && keeps(wi, flipped)) {
-            const Vec3 seen_wo = seen(wo, flipped), seen_wi = seen(wi, flipped);
-            result = B::evaluate(seen_wo, seen_wi, transport);
-            // Methods multiply by the cosine of the light in the frame that is not flipped.
-            const Vec3 &light = from_camera ? wi : wo, &seen_light = from_camera ? seen_wi : seen_wo;
-            result.value *= light.z != 0 ? std::abs(seen_light.z / light.z) * shadow(light) : 0.0f;
-        } else {
-            result.pdf = {};
-        }
-        if (!from_camera) result.pdf = importance_pdf(wo, wi);
+        if (!keeps(wo, flipped) || !keeps(wi, flipped)) return {};
+        const Vec3 seen_wo = seen(wo, flipped), seen_wi = seen(wi, flipped);
+        BsdfValue result = B::evaluate(seen_wo, seen_wi, transport);
+        // Methods multiply by the cosine of the light in the frame that is not flipped.
+        const Vec3 &light = from_camera ? wi : wo, &seen_light = from_camera ? seen_wi : seen_wo;
+        result.value *= light.z != 0 ? std::abs(seen_light.z / light.z) * shadow(light) : 0.0f;
+        if (!from_camera && tries_for(wo).both()) result.pdf = result.pdf * 0.5f;
         return result;
     }
 
@@ -88,15 +84,6 @@ private:
         return 2 / (1 + std::sqrt(1 + alpha_squared * std::max(squared_tangent(dot(map.before, to_light)), 0.0f)));
     }
 
-    /// The density with which `sample` chooses `wi` for importance.
-    SolidAnglePdf importance_pdf(const Vec3& wo, const Vec3& wi) const {
-        const Tries tries = tries_for(wo);
-        const bool flipped = is_flipped(wi);
-        if (!(flipped ? tries.flipped : tries.straight) || !keeps(wi, flipped)) return {};
-        const SolidAnglePdf pdf = B::evaluate(seen(wo, flipped), seen(wi, flipped), Transport::importance).pdf;
-        return pdf * (tries.both() ? 0.5f : 1.0f);
-    }
-
     Maybe<BsdfSample> sample_from(const Vec3& wo, const Vec3& u, Transport transport, bool flipped) const {
         if (!keeps(wo, flipped)) return {};
         const Vec3 seen_wo = seen(wo, flipped);
@@ -121,8 +108,5 @@ private:
         return result;
     }
 };
-
-template <class B>
-inline constexpr bool transmits<Mapped<B>> = transmits<B>;
 
 }  // namespace lightswitch

@@ -54,6 +54,9 @@ struct Plastic {
 
     std::string problem() const;
 
+    /// Of the base, whose colour one sees.
+    Rgb albedo() const { return diffuse_reflectance; }
+
     /// The base, and a highlight stronger than the few percent that the coat reflects.
     PhongTerms phong() const {
         return {.diffuse = diffuse_reflectance, .specular = 0.5f * specular_reflectance, .shininess = 500};

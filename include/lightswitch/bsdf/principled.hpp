@@ -91,7 +91,8 @@ struct Principled {
         return BsdfSample{.wi = wi, .weight = v.value * (std::abs(wi.z) / v.pdf.value), .pdf = v.pdf, .eta = crossed};
     }
 
-    bool transmits_light() const { return refracting() > 0; }
+    /// Also where `metallic` 1 leaves nothing of it: a texture may say so of some places only.
+    bool transmits_light() const { return spec_trans > 0; }
     bool isotropic() const { return anisotropic == 0; }
     std::string problem() const;
 

@@ -54,6 +54,9 @@ struct RoughPlastic {
 
     std::string problem() const;
 
+    /// Of the base, whose colour one sees.
+    Rgb albedo() const { return diffuse_reflectance; }
+
     /// The base, and a highlight stronger than the few percent that the coat reflects.
     PhongTerms phong() const {
         return {.diffuse = diffuse_reflectance,

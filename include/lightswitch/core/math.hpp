@@ -95,6 +95,16 @@ struct Basis {
     [[gnu::always_inline]] Vec3 to_world(const Vec3& v) const { return v.x * tangent + v.y * bitangent + v.z * normal; }
 };
 
+/// The size of the largest entry; infinite when one is not a number.
+inline double largest_entry(const DMat3& m) {
+    double largest = 0;
+    for (int c = 0; c < 3; ++c)
+        for (int r = 0; r < 3; ++r)
+            largest =
+                std::isnan(m[c][r]) ? std::numeric_limits<double>::infinity() : std::max(largest, std::abs(m[c][r]));
+    return largest;
+}
+
 /// Whether the columns are unit vectors at right angles, to that tolerance of their products: a rotation, perhaps
 /// mirrored.
 inline bool is_orthonormal(const DMat3& m, double tolerance) {

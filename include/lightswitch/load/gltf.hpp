@@ -7,6 +7,7 @@
 #include <lightswitch/load/gltf_mesh.hpp>
 #include <lightswitch/load/gltf_view.hpp>
 #include <lightswitch/load/mesh_file.hpp>
+#include <lightswitch/scene/framing.hpp>
 #include <lightswitch/scene/library.hpp>
 
 #include <algorithm>
@@ -44,11 +45,11 @@ public:
         if (!has_camera_) {
             notices_.add(file_.origin(), "there is no camera: one that sees all is added");
             scene_.film = gltf_film(16.0 / 9, file_.origin());
-            gltf_frame(scene_);
+            at_place(file_.origin(), [&] { frame_scene(scene_); });
         }
-        if (!gltf_has_light(scene_)) {
+        if (!has_light(scene_)) {
             notices_.add(file_.origin(), "nothing shines: a sky is added");
-            scene_.add(EnvironmentSource{.radiance = Rgb(1)}, file_.origin());
+            add_default_sky(scene_);
         }
         scene_.files = file_.files();
         notices_.report(notices);
@@ -159,14 +160,8 @@ private:
     /// How much the longest direction is stretched beside the shortest, to a factor of 9; infinite where there is no
     /// inverse.
     static double squeeze(const DMat4& matrix) {
-        const DMat3 linear(matrix), inverse = glm::inverse(linear);
-        double size = 0, inverse_size = 0;
-        for (int c = 0; c < 3; ++c)
-            for (int r = 0; r < 3; ++r) {
-                size = std::max(size, std::abs(linear[c][r]));
-                inverse_size = std::max(inverse_size, is_finite(inverse[c][r]) ? std::abs(inverse[c][r]) : HUGE_VAL);
-            }
-        return size * inverse_size;
+        const DMat3 linear(matrix);
+        return largest_entry(linear) * largest_entry(glm::inverse(linear));
     }
 
     /// Puts a mesh where nodes want it: as shapes of its own, or as a group where several do.

@@ -6,7 +6,6 @@
 
 #if LIGHTSWITCH_HAS_GLTF
 
-#include <lightswitch/scene/check.hpp>
 #include <lightswitch/scene/library.hpp>
 
 #include <numbers>
@@ -83,26 +82,6 @@ inline void read_gltf_light(const GltfFile& file, int number, const DMat4& to_wo
     else fail(where, "has the type " + quote(light.type) + ": it must be point, spot or directional");
     if (const std::string problem = source->problem(); !problem.empty()) fail(where, problem);
     scene.add(std::move(*source), where);
-}
-
-/// Whether anything in the scene shines.
-inline bool gltf_has_light(const LibraryDescription& scene) {
-    const auto shines = [](const auto& shape) { return shape.emission.has_value(); };
-    const auto any = [&](const auto& shapes) { return std::any_of(shapes.begin(), shapes.end(), shines); };
-    return !scene.sources.empty() || any(scene.shapes) ||
-           std::any_of(scene.groups.begin(), scene.groups.end(), [&](const auto& group) { return any(group.shapes); });
-}
-
-/// A camera that sees all of the scene, from the right, above and the front (+z).
-inline void gltf_frame(LibraryDescription& scene) {
-    const Bounds bounds = find_bounds(scene);
-    const DVec3 center = (bounds.lower + bounds.upper) * 0.5, backward = glm::normalize(DVec3(0.5, 0.4, 0.8));
-    const double radius = std::max(glm::length(bounds.upper - center), 1e-30);
-    scene.camera = {};
-    scene.camera.fov = 40;
-    scene.camera.fov_axis = CameraDescription::FovAxis::smaller;
-    scene.camera.to_world = CameraDescription::look_at(DVec3(0), -backward, {0, 1, 0});
-    scene.camera.to_world[3] = glm::dvec4(center + backward * (radius / std::sin(glm::radians(20.0))), 1);
 }
 
 }  // namespace lightswitch::detail

@@ -187,12 +187,10 @@ private:
     }
 
     bool transmits_light(std::size_t number) const {
-        const auto& material = scene_.materials[number];
-        if (!material.layer)
+        return any_below(scene_, number, [](const auto& material) {
+            if (material.layer) return std::holds_alternative<Mask>(*material.layer);
             return std::visit([](const auto& bsdf) { return lightswitch::transmits_light(bsdf); }, material.bsdf);
-        if (std::holds_alternative<Mask>(*material.layer)) return true;
-        const auto inner = below(*material.layer);
-        return std::any_of(inner.begin(), inner.end(), [&](std::size_t i) { return transmits_light(i); });
+        });
     }
 
     const XmlFile& file_;

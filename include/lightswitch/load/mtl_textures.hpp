@@ -25,7 +25,7 @@ public:
 
     /// The texture times `factor`; nothing, and a notice, when there is no image that can be read.
     std::optional<Texture> read(const MtlMap& map, Use use, const Rgb& factor = Rgb(1)) {
-        const auto path = find_file(map.file, folders_);
+        const auto path = find_loosely(map.file, folders_);
         if (!path) {
             notices_.add(map.origin, "there is no image " + quote(map.file) + ": the material does without it");
             return {};

@@ -103,10 +103,10 @@ private:
     /// A statement `mtllib` names one file, perhaps with spaces in its name, or several.
     void read_library(const ObjContents::Name& library) {
         const std::vector<std::filesystem::path> folders{path_.parent_path()};
-        if (const auto file = find_file(library.text, folders)) return read_file(*file, library);
+        if (const auto file = find_loosely(library.text, folders)) return read_file(*file, library);
         std::string_view rest = library.text;
         for (std::string_view name = next_word(rest); !name.empty(); name = next_word(rest))
-            if (const auto file = find_file(name, folders)) read_file(*file, library);
+            if (const auto file = find_loosely(name, folders)) read_file(*file, library);
             else mtl_notices_.add(place(library.line), "there is no material file " + quote(name));
     }
 

@@ -4,10 +4,10 @@
 // `<alias>`, `<path>`, and words of older versions. Of all headers this one and that of the upgrade include pugixml.
 
 #include <lightswitch/core/file.hpp>
+#include <lightswitch/load/find_file.hpp>
 #include <lightswitch/load/mitsuba_upgrade.hpp>
 #include <lightswitch/load/problems.hpp>
 #include <lightswitch/load/xml_parameters.hpp>
-#include <lightswitch/load/xml_paths.hpp>
 
 #include <pugixml.hpp>
 

@@ -61,7 +61,7 @@ struct Albedo {
             const Maybe<BsdfSample> mirrored = scene.with_bsdf(*hit, [&]<class B>(const B& bsdf) {
                 if constexpr (B::specular) {
                     if (bounce < max_bounces)
-                        return bsdf.sample(hit->shading_frame().to_local(hit->wo), Vec3(0.5f), Transport::importance);
+                        return bsdf.sample(hit->shading_frame().to_local(hit->wo), Vec3(0.5f), Transport::radiance);
                     sum += throughput;
                 } else {
                     sum += throughput * glm::clamp(detail::albedo_of(bsdf), 0.0f, 1.0f);
@@ -69,7 +69,7 @@ struct Albedo {
                 return Maybe<BsdfSample>();
             });
             if (!mirrored) break;
-            throughput *= mirrored->weight;
+            throughput *= mirrored->weight * square(mirrored->eta);  // refraction changes no colour
             hit = scene.intersect(hit->spawn(hit->shading_frame().to_world(mirrored->wi)));
         }
         return glm::clamp(sum, 0.0f, 1.0f);
@@ -133,10 +133,8 @@ struct AtPixelCentres {
         frame.pixels([&](const Ray&, auto&, const PixelContext& pixel) {
             const Vec2 centre(static_cast<float>(pixel.index % width) + 0.5f,
                               static_cast<float>(pixel.index / width) + 0.5f);
-            embree::Hit hit;
-            return scene.accelerator().intersect(scene.camera().ray(centre, Vec2(0.5f)), hit)
-                       ? Rgb(static_cast<float>(Numbers::number(hit)))
-                       : Rgb(0);
+            const auto hit = scene.identify(scene.camera().ray(centre, Vec2(0.5f)));
+            return hit ? Rgb(static_cast<float>(Numbers::number(*hit))) : Rgb(0);
         });
     }
 };
@@ -144,7 +142,8 @@ struct AtPixelCentres {
 }  // namespace detail
 
 /// Which shape the centre of the pixel sees: meshes count from 1 in the order of the description (those without a
-/// triangle that has an area are left out), and all spheres share the number after them. 0 is nothing.
+/// triangle that has an area are left out), then those of groups, the same in every instance, and all spheres share the
+/// number after them. 0 is nothing.
 struct ShapeNumber : detail::AtPixelCentres<ShapeNumber> {
     static constexpr std::string_view name = "shape", channels = "I";
     static constexpr Kind kind = Kind::heuristic;

@@ -10,7 +10,8 @@
 namespace lightswitch {
 
 /// Photon mapping (Jensen 1996), progressive (Knaus and Zwicker 2011): light paths leave photons where they meet
-/// surfaces that are not specular; paths from the camera go on to the first such surface and gather the photons around.
+/// surfaces that are not specular; paths from the camera go on to the first such surface and gather the photons around
+/// (and go on if it has a Dirac lobe, too).
 /// Every iteration has photons of its own and a smaller radius, so that the mean over the iterations converges to the
 /// exact image.
 struct PhotonMapping {
@@ -81,18 +82,23 @@ private:
             if (hit->light) sum += throughput * scene.emitted(*hit, hit->wo) * sampled.weight(scene, *hit);
             if (depth == max_depth) return sum;
             const bool diffuse = connectable(scene, *hit);
-            if (diffuse && gather) return sum + throughput * estimate(scene, *hit, depth, map) * share;
+            const bool gathers = diffuse && gather;
+            if (gathers) {
+                sum += throughput * estimate(scene, *hit, depth, map) * share;
+                // What a Dirac lobe beside smooth ones shows no photon tells.
+                if (!scene.with_bsdf(*hit, [](const auto& bsdf) { return has_dirac_lobe(bsdf); })) return sum;
+            }
 
             const Vec2 direction = sampler.next_2d(), choices = sampler.next_2d();
             const Basis basis = hit->shading_frame();
-            if (diffuse) {
+            if (diffuse && !gathers) {
                 sum += throughput * direct_light(scene, *hit, choices.x, sampler.next_2d());
                 gather = true;
             }
             const auto scattered = scene.with_bsdf(*hit, [&](const auto& bsdf) {
                 return bsdf.sample(basis.to_local(hit->wo), Vec3(direction, choices.x), Transport::radiance);
             });
-            if (!scattered) return sum;
+            if (!scattered || (gathers && !scattered->specular)) return sum;
             throughput *= scattered->weight;
             eta *= scattered->eta;
             if (!survives_roulette(throughput, eta, depth, rr_depth, choices.y)) return sum;

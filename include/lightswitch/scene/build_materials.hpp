@@ -57,6 +57,27 @@ private:
                                          MaterialIndex::varying | (material.two_sided ? MaterialIndex::both_sides : 0));
         data_.layers.push_back(record(layer));
         data_.masked = data_.masked || std::holds_alternative<Mask>(layer);
+        count_ways(material.origin);
+    }
+
+    /// Finds whether the latest layer is certain. If it is not, `presence` goes all ways down from it, where photons are
+    /// left.
+    void count_ways(const Origin& origin) {
+        constexpr double most = 65536;
+        LayerRecord& layer = data_.layers.back();
+        const bool both = layer.kind == LayerRecord::Kind::blend || layer.kind == LayerRecord::Kind::both_sides;
+        double ways = 0;
+        layer.certain = layer.kind != LayerRecord::Kind::mask;
+        for (std::size_t i = 0; i < (both ? 2 : 1); ++i) {
+            const MaterialIndex inner = layer.inner[i];
+            const bool is_layer = inner.kind() == layers;
+            ways += is_layer ? ways_[inner.position()] : 1;
+            layer.certain =
+                layer.certain && (is_layer ? data_.layers[inner.position()].certain : !Data::is_specular[inner.kind()]);
+        }
+        if (!layer.certain && ways > most)
+            fail(origin, "materials lie over each other in more than " + std::to_string(int(most)) + " ways");
+        ways_.push_back(layer.certain ? 1 : ways);
     }
 
     LayerRecord record(const MaterialLayer& layer) const {
@@ -114,6 +135,7 @@ private:
 
     Data& data_;
     std::vector<MaterialIndex> indices_;
+    std::vector<double> ways_;  // down from each layer
 };
 
 }  // namespace lightswitch::detail

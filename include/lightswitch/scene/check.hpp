@@ -109,14 +109,31 @@ int layer_depth(const SceneDescription<Material>& scene, std::size_t number, std
     return depths[number] = depth + 1;
 }
 
+/// Whether `found(material)` is true of a material or of one that it lies over. Each is asked once, however often it is
+/// used.
+template <class Material>
+bool any_below(const SceneDescription<Material>& scene, std::size_t number, const auto& found) {
+    std::vector<bool> seen(scene.materials.size(), false);
+    std::vector<std::size_t> pending{number};
+    while (!pending.empty()) {
+        const std::size_t next = pending.back();
+        pending.pop_back();
+        if (next >= seen.size() || seen[next]) continue;
+        seen[next] = true;
+        const auto& material = scene.materials[next];
+        if (found(material)) return true;
+        if (!material.layer) continue;
+        for (const std::size_t inner : below(*material.layer)) pending.push_back(inner);
+    }
+    return false;
+}
+
 /// Whether a ray can go through the surface because it is masked.
 template <class Material>
 bool is_masked(const SceneDescription<Material>& scene, std::size_t number) {
-    const auto& layer = scene.materials[number].layer;
-    if (!layer) return false;
-    if (std::holds_alternative<Mask>(*layer)) return true;
-    const auto inner = below(*layer);
-    return std::any_of(inner.begin(), inner.end(), [&](std::size_t other) { return is_masked(scene, other); });
+    return any_below(scene, number, [](const auto& material) {
+        return material.layer && std::holds_alternative<Mask>(*material.layer);
+    });
 }
 
 inline std::string layer_problem(const MaterialLayer& layer) {
@@ -144,21 +161,19 @@ void check_shapes(const SceneDescription<Material>& scene, const auto& shapes) {
         if (shape.material >= scene.materials.size()) fail(shape.origin, "the shape's material does not exist");
         std::visit([&](const auto& geometry) { check(geometry, shape.origin); }, shape.geometry);
         if (!shape.emission) continue;
-        if (const std::string problem = radiance_problem(*shape.emission, "the light's radiance"); !problem.empty())
-            fail(shape.origin, problem);
+        const auto check_radiance = [&](const Rgb& factor) {
+            if (const std::string problem = radiance_problem(*shape.emission * factor, "the light's radiance");
+                !problem.empty())
+                fail(shape.origin, problem);
+        };
+        check_radiance(Rgb(1));
         if (shape.emission_texture) {
             if (std::holds_alternative<Sphere>(shape.geometry))
                 fail(shape.origin, "only meshes can have a texture for their radiance, and this is a sphere");
             if (const std::string problem = shape.emission_texture->problem(); !problem.empty())
                 fail(shape.origin, problem);
-            if (const std::string problem =
-                    radiance_problem(*shape.emission * shape.emission_texture->least(), "the light's radiance");
-                !problem.empty())
-                fail(shape.origin, problem);
-            if (const std::string problem =
-                    radiance_problem(*shape.emission * shape.emission_texture->most(), "the light's radiance");
-                !problem.empty())
-                fail(shape.origin, problem);
+            check_radiance(shape.emission_texture->least());
+            check_radiance(shape.emission_texture->most());
         }
         // Light would come from it with that probability when it is met, but always when it is sampled.
         if (is_masked(scene, shape.material)) fail(shape.origin, "a surface that shines cannot be masked");

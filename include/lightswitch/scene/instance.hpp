@@ -51,13 +51,7 @@ struct InstanceRecord {
         const DMat3 linear = DMat3(to_world) * ratio;
         const DVec3 shift = scene.point(DVec3(to_world * glm::dvec4(group.space.center(), 1)));
         const DMat3 inverse = glm::inverse(linear);
-        double size = 0, inverse_size = 0;
-        for (int c = 0; c < 3; ++c)
-            for (int r = 0; r < 3; ++r) {
-                size = std::max(size, std::abs(linear[c][r]));
-                inverse_size = std::max(inverse_size, std::abs(inverse[c][r]));
-            }
-        const double condition = 9 * size * inverse_size;
+        const double size = largest_entry(linear), condition = 9 * size * largest_entry(inverse);
         if (!(condition < 1e4))
             fail(origin, "the instance's transform has no inverse, or squeezes the group by more than 1 : 1000");
         if (!(size > smallest_shape)) fail(origin, "the instance is too small to be seen beside the rest of the scene");

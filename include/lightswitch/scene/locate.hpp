@@ -2,6 +2,7 @@
 
 // From what Embree says of a hit to the point on the surface.
 
+#include <lightswitch/core/maybe.hpp>
 #include <lightswitch/embree/accelerator.hpp>
 #include <lightswitch/geometry/surface_point.hpp>
 #include <lightswitch/scene/scene_data.hpp>
@@ -91,6 +92,15 @@ namespace lightswitch::detail {
         locate_on_instance(data, placement.instances[hit.instance], ray, hit, point);
     else if (hit.geometry < data.meshes.size()) [[likely]] locate_on_triangle(data, ray, hit, point);
     else locate_on_sphere(data, ray, hit, point);
+}
+
+/// The numbers of the scene's own records for what a ray meets, wherever an instance places it.
+[[gnu::noinline]] inline Maybe<embree::Hit> identify(const auto& data, const Placement& placement, const Ray& ray) {
+    embree::Hit hit;
+    if (!placement.accelerator.intersect(ray, hit)) return {};
+    SurfacePoint point;
+    locate(data, placement, ray, hit, point);
+    return hit;
 }
 
 }  // namespace lightswitch::detail

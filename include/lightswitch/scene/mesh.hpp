@@ -62,9 +62,7 @@ inline void Mesh::transform(const DMat4& matrix) {
     for (DVec3& p : positions) p = DVec3(matrix * glm::dvec4(p, 1.0));
 
     // The inverse transpose up to a positive factor, by columns. The scale is taken out first, against underflow.
-    double scale = 0;
-    for (int c = 0; c < 3; ++c)
-        for (int r = 0; r < 3; ++r) scale = std::max(scale, std::abs(matrix[c][r]));
+    const double scale = largest_entry(DMat3(matrix));
     const DVec3 x = DVec3(matrix[0]) / scale, y = DVec3(matrix[1]) / scale, z = DVec3(matrix[2]) / scale;
     const bool reflection = glm::dot(x, glm::cross(y, z)) < 0;
     const double sign = reflection ? -1 : 1;

@@ -98,6 +98,25 @@ inline Vec3 mapped_normal(const SurfacePoint& point, const Tangents& tangents, c
     return Basis(point.shading_normal, tangents.u).to_world(local * (1 / std::sqrt(squared)));
 }
 
+/// The probability with which the layers lead from a material to a model that is not specular. `behind` is whether the
+/// surface is seen from the back.
+template <class Data>
+float presence(const Data& data, MaterialIndex material, const Vec2& uv, bool behind) {
+    if (material.kind() < Data::is_specular.size()) return Data::is_specular[material.kind()] ? 0.0f : 1.0f;
+    const LayerRecord& layer = data.layers[material.position()];
+    if (layer.certain) return 1;
+    const auto below = [&](int i) { return presence(data, layer.inner[static_cast<std::size_t>(i)], uv, behind); };
+    switch (layer.kind) {
+        case LayerRecord::Kind::blend: {
+            const float second = std::clamp(luminance(layer.texture(uv)), 0.0f, 1.0f);
+            return (1 - second) * below(0) + second * below(1);
+        }
+        case LayerRecord::Kind::mask: return std::clamp(luminance(layer.texture(uv)), 0.0f, 1.0f) * below(0);
+        case LayerRecord::Kind::both_sides: return below(behind ? 1 : 0);
+        default: return below(0);
+    }
+}
+
 /// Goes down the layers over a point until a surface model is reached, which becomes the point's material; false where
 /// the surface is not there. `tangents()` is asked when a layer needs them; `map` says what maps have done to the
 /// shading normal, all but the normal before, for which the frame must be known.
@@ -193,7 +212,11 @@ template <class Point>
     point.tangent = Vec3(0);
     const Vec3 normal_before = point.shading_normal;
     MappedNormal map;
-    if (point.material.kind() == kinds && !resolve_layers<kinds>(data, point.uv, point, map, tangents)) return false;
+    point.presence = 1;
+    if (point.material.kind() == kinds) {
+        point.presence = presence(data, point.material, point.uv, dot(point.wo, normal_before) < 0);
+        if (!resolve_layers<kinds>(data, point.uv, point, map, tangents)) return false;
+    }
     dispatch<kinds>(point.material.kind(), [&](auto kind) {
         const auto& material = std::get<kind>(data.bsdfs)[point.material.position()];
         using Model = model_of<std::remove_cvref_t<decltype(material)>>;
@@ -213,23 +236,18 @@ template <class Point>
     return true;
 }
 
-/// Follows a ray from a point where the surface is not there to the first one where it is, if there is one.
+/// Follows a ray from a point where the surface is not there to the first one where it is, if there is one. Only where
+/// the ray begins is moved: it ends where it did, just before a light perhaps.
 template <class Point>
 [[gnu::noinline]] void go_on(const auto& data, const Placement& placement, Ray ray, Maybe<Point>& point) {
-    float passed = 0;  // in multiples of the direction
     for (;;) {
-        passed += point->distance;
-        ray = {.origin = point->position_towards(ray.direction),
-               .direction = ray.direction,
-               .near = 0,
-               .far = ray.far - point->distance};
+        ray.near = point->distance + point->offset / std::abs(dot(point->normal, ray.direction));
         point = {};
         embree::Hit hit;
-        if (!(ray.far > 0) || !placement.accelerator.intersect(ray, hit)) return;
+        if (!(ray.near < ray.far) || !placement.accelerator.intersect(ray, hit)) return;
         locate(data, placement, ray, hit, point.emplace());
-        if (!point->material.varies() || resolve(data, placement, hit, *point)) break;
+        if (!point->material.varies() || resolve(data, placement, hit, *point)) return;
     }
-    point->distance += passed;
 }
 
 }  // namespace lightswitch::detail

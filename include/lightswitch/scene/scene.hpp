@@ -109,6 +109,10 @@ public:
         return result;
     }
 
+    /// The numbers of the closest surface along `ray`, also where it is masked: of the scene's own meshes and spheres,
+    /// wherever instances place them.
+    Maybe<embree::Hit> identify(const Ray& ray) const { return detail::identify(data(), *placement_, ray); }
+
     // --- surfaces
 
     /// Calls `f(bsdf)` with the surface model at `point`, as its concrete type, and returns what it returns.
@@ -124,12 +128,7 @@ public:
 
     /// Whether the scene has a material some lobe of which is a Dirac distribution: a mirror, clear glass, smooth
     /// plastic.
-    bool has_specular() const {
-        const auto any = [](const auto& list) {
-            return std::any_of(list.begin(), list.end(), [](const auto& bsdf) { return has_dirac_lobe(bsdf); });
-        };
-        return std::apply([&](const auto&... lists) { return (any(lists) || ...); }, data().bsdfs);
-    }
+    bool has_specular() const { return detail::any_dirac_lobe(data().bsdfs); }
 
     // --- lights
 
@@ -281,12 +280,11 @@ private:
     using Shared = std::shared_ptr<const Contents>;
     using SharedPlacement = std::shared_ptr<const detail::Placement>;
 
-    Scene(Shared contents, SharedPlacement placement, const CameraDescription& camera, const FilmDescription& film)
-        : contents_(std::move(contents)),
-          placement_(std::move(placement)),
-          film_(film),
-          camera_(detail::make_camera<CameraType, C...>(camera, film, space(), radius())),
-          camera_id_(detail::camera_id(camera, film)) {}
+    Scene(const Shared& contents, SharedPlacement placement, const CameraDescription& camera,
+          const FilmDescription& film)
+        : Scene(contents, std::move(placement),
+                detail::make_camera<CameraType, C...>(camera, film, contents->data.space, contents->data.radius), film,
+                detail::camera_id(camera, film)) {}
     Scene(Shared contents, SharedPlacement placement, CameraType camera, const FilmDescription& film, std::string id)
         : contents_(std::move(contents)),
           placement_(std::move(placement)),

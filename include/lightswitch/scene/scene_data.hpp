@@ -11,6 +11,7 @@
 #include <lightswitch/scene/description.hpp>
 #include <lightswitch/scene/instance.hpp>
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <tuple>
@@ -61,6 +62,7 @@ struct LayerRecord {
     Texture texture{Rgb(0)};
     float scale = 1;  ///< of a bump map in render space, of a normal map across the normal
     bool flips = false, shadows = false, against_v = false;
+    bool certain = true;  ///< whether all choices below lead to a model that is not specular
 };
 
 /// The point that rays find in a scene of such materials.
@@ -73,6 +75,8 @@ struct SceneData;
 
 template <class... B, class... L>
 struct SceneData<Bsdfs<B...>, Lights<L...>> {
+    static constexpr std::array<bool, sizeof...(B)> is_specular{model_of<B>::specular...};  ///< by the kind of material
+
     std::string name;
     RenderSpace space;
     double radius = 1;                ///< of a sphere around the origin of render space that holds the scene
@@ -93,6 +97,13 @@ struct SceneData<Bsdfs<B...>, Lights<L...>> {
     std::vector<Emitter> emitters;
     SceneStatistics statistics;
 };
+
+/// Whether a material in any of the lists has a lobe that is a Dirac distribution.
+template <class... B>
+bool any_dirac_lobe(const std::tuple<std::vector<B>...>& all) {
+    const auto found = [](const auto& bsdf) { return has_dirac_lobe(bsdf); };
+    return std::apply([&](const auto&... lists) { return (std::ranges::any_of(lists, found) || ...); }, all);
+}
 
 /// What scenes with different cameras and instances in other places share.
 template <class BsdfList, class LightList>

@@ -42,10 +42,7 @@ public:
         return with_textures([&](const Texture& texture) { return texture(place.uv); });
     }
 
-    bool has_dirac_lobe() const {
-        if constexpr (requires { constants_.has_dirac_lobe(); }) return constants_.has_dirac_lobe();
-        else return B::specular || partly_specular<B>;
-    }
+    bool has_dirac_lobe() const { return lightswitch::has_dirac_lobe<B>(constants_); }
     /// Whether light gets through with the greatest values of the textures.
     bool transmits_light() const {
         return lightswitch::transmits_light(with_textures([](const Texture& texture) { return texture.most(); }));

@@ -1,0 +1,62 @@
+// Layers of materials: what a description may say of them, and that it is checked in little time.
+
+#include <lightswitch/scene/any_scene.hpp>
+
+#include "support/errors.hpp"
+
+#include <doctest/doctest.h>
+
+using namespace lightswitch;
+using namespace lightswitch::test;
+
+namespace {
+
+/// A ball of the last of the materials, which shines.
+LibraryDescription luminous_ball(LibraryDescription scene) {
+    scene.add(Sphere{}, scene.materials.size() - 1, Rgb(1));
+    scene.camera.to_world[3] = glm::dvec4(0, 0, -5, 1);
+    return scene;
+}
+
+std::string refusal(const LibraryDescription& scene) {
+    return message_of([&] { build_scene<TexturedBsdfs, AllLights>(scene); });
+}
+
+const Texture half{Rgb(0.5f)};
+
+}  // namespace
+
+TEST_CASE("layers: a material that is used in many ways is looked at once") {
+    LibraryDescription scene;
+    scene.add(Lambert{});
+    for (std::size_t i = 0; i < 60; ++i) scene.add(Blend{i, i, half});  // 2^60 ways down
+    CHECK(refusal(luminous_ball(scene)) == "(no error)");
+    scene.materials[0].layer = Mask{1, half};
+    CHECK(refusal(luminous_ball(scene)).find("contains itself") != std::string::npos);
+}
+
+TEST_CASE("layers: what is impossible is refused with a reason") {
+    LibraryDescription masked;
+    masked.add(Lambert{});
+    masked.add(Mask{0, half});
+    masked.add(Blend{0, 1, half});
+    CHECK(refusal(luminous_ball(masked)).find("a surface that shines cannot be masked") != std::string::npos);
+    masked.materials[2].layer = Blend{0, 7, half};
+    CHECK(refusal(luminous_ball(masked)).find("the material inside does not exist") != std::string::npos);
+    masked.materials[2].layer = Blend{0, 0, Texture(Rgb(1.5f))};
+    CHECK(refusal(luminous_ball(masked)).find("the weight has values outside 0 to 1") != std::string::npos);
+    masked.materials[2].layer = BumpMap{0, half, infinity};
+    CHECK(refusal(luminous_ball(masked)).find("the scale of the bump map") != std::string::npos);
+
+    LibraryDescription deep;
+    deep.add(Lambert{});
+    for (std::size_t i = 0; i < 65; ++i) deep.add(Blend{i, i, half});
+    CHECK(refusal(luminous_ball(deep)).find("more than 64 materials") != std::string::npos);
+
+    LibraryDescription plain;
+    plain.add(Lambert{});
+    plain.add(Blend{0, 0, half});
+    plain.add(Sphere{}, 1);
+    CHECK(message_of([&] { build_scene<AllBsdfs, AllLights>(plain); }).find("no place for layers") !=
+          std::string::npos);
+}
