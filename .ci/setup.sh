@@ -11,6 +11,8 @@ jobs=${LIGHTSWITCH_JOBS:-$(nproc 2> /dev/null || getconf _NPROCESSORS_ONLN)}
 
 # A checkout elsewhere finds what this one has compiled.
 export CCACHE_BASEDIR=${CCACHE_BASEDIR:-$root} CCACHE_NOHASHDIR=${CCACHE_NOHASHDIR:-1}
+# Without these ccache compiles anew whatever is precompiled.
+export CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros}
 
 # configure_project [CMAKE_OPTION...]: installs what is missing and configures. Options stay in
 # the build directory until they are given another value.

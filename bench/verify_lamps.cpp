@@ -16,7 +16,7 @@ Mesh wall(const DVec3& corner, const DVec3& along, double height) {
 
 /// A grey floor of 1.6 x 1.6 seen from above; nothing shines yet.
 LibraryDescription floor_from_above() {
-    auto scene = empty_view<LibraryBsdf>("floor-from-above", {0, 2, 0.01}, {0, 0, 0}, 45);
+    auto scene = empty_view<AnyMaterial>("floor-from-above", {0, 2, 0.01}, {0, 0, 0}, 45);
     scene.add(level({0, 0, 0}, 0.8, 0.8), scene.add(Lambert{Rgb(0.5f)}));
     return scene;
 }
@@ -30,7 +30,7 @@ LibraryDescription lamp_above_floor(double height) {
 
 /// A point lamp in the corner of three walls, that far from each.
 LibraryDescription lamp_in_corner(double distance) {
-    auto scene = empty_view<LibraryBsdf>("lamp-in-corner", {1.6, 1.4, 1.6}, {0.2, 0.2, 0.2}, 45);
+    auto scene = empty_view<AnyMaterial>("lamp-in-corner", {1.6, 1.4, 1.6}, {0.2, 0.2, 0.2}, 45);
     const std::size_t grey = scene.add(TwoSided<Lambert>{{Rgb(0.5f)}});
     scene.add(level({0.5, 0, 0.5}, 0.5, 0.5), grey);
     scene.add(wall({0, 0, 0}, {1, 0, 0}, 1), grey);

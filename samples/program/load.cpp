@@ -4,7 +4,8 @@
 #include "scene_files.hpp"
 #include "text.hpp"
 
-#include <lightswitch/load/mitsuba.hpp>
+#include <lightswitch/compiled.hpp>
+#include <lightswitch/load/scene_file.hpp>
 #include <lightswitch/scene/stock.hpp>
 
 #include <fmt/format.h>
@@ -59,12 +60,7 @@ LibraryDescription describe(const SceneOptions& options, Notices& notices, Probl
 std::string material_name(const LibraryDescription::NamedMaterial& material) {
     const std::string sides = material.two_sided ? "two-sided " : "";
     if (material.layer) return sides + std::string(layer_name(*material.layer));
-    return sides + std::visit(
-                       []<class M>(const M&) {
-                           const std::string name(model_of<M>::name);
-                           return PlacedMaterial<M> ? "textured " + name : name;
-                       },
-                       material.bsdf);
+    return sides + (material.bsdf.placed() ? "textured " : "") + std::string(material.bsdf.model_name());
 }
 
 SceneSummary summarize(const LibraryDescription& scene) {

@@ -133,7 +133,7 @@ int render(const RenderOptions& options) {
                                     std::isinf(progress.film.relative_error());
                       if (stays_black) cancellation.stop();
                   }};
-    Rendered rendered = std::visit([&](const auto& m) { return run(loaded.scene, m, job); }, method);
+    Rendered rendered = run(loaded.scene, method, job);
     line.clear();
 
     RenderStatistics& statistics = rendered.statistics;

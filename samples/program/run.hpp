@@ -1,8 +1,8 @@
 #pragma once
 
-// One render by one method. Each method has a translation unit of its own, run_*.cpp, so that they build in parallel
-// and the rest of the program never sees the loop.
+// One render by one method, whichever scene and method were chosen.
 
+#include <lightswitch/compiled.hpp>
 #include <lightswitch/method/any_method.hpp>
 #include <lightswitch/method/extra_outputs.hpp>
 #include <lightswitch/render/render.hpp>
@@ -29,15 +29,13 @@ struct Rendered {
 };
 
 /// Renders until the budget is spent or the stop token asks for an end.
-template <class M>
-Rendered run(const AnyScene& scene, const M& method, const Job& job);
+Rendered run(const AnyScene& scene, const AnyMethod& method, const Job& job);
 
 /// Renders extra outputs; none when the stop token asks for an end.
 std::vector<Layer> run_outputs(const AnyScene& scene, const std::vector<ExtraOutput>& outputs, int samples,
                                const Settings& settings);
 
 /// The method on the scene as a side of `verify`. The scene must outlive it.
-template <class M>
-Estimator make_estimator(const AnyScene& scene, const M& method, const Settings& settings);
+Estimator make_estimator(const AnyScene& scene, const AnyMethod& method, const Settings& settings);
 
 }  // namespace lightswitch::program

@@ -1,7 +1,6 @@
 #include "scene_files.hpp"
 
-#include <lightswitch/load/gltf.hpp>
-#include <lightswitch/load/obj_scene.hpp>
+#include <lightswitch/load/scene_file.hpp>
 
 #include <algorithm>
 #include <array>

@@ -193,8 +193,7 @@ Contest make_contest(const VerifyCommand& command, const std::stop_token& stop) 
 
     const Settings settings{.threads = command.options.threads, .stop = stop};
     for (const AnyMethod& method : methods)
-        contest.methods.push_back(
-            std::visit([&](const auto& m) { return make_estimator(contest.loaded->scene, m, settings); }, method));
+        contest.methods.push_back(make_estimator(contest.loaded->scene, method, settings));
     // The reference came first; or second, after the files.
     const auto first = contest.methods.begin() + (from_files ? 1 : 0);
     contest.reference = *first;

@@ -7,6 +7,7 @@
 #include <lightswitch/bsdf/microfacets.hpp>
 
 #include "../support/chi_square.hpp"
+#include "support/paths.hpp"
 
 #include <fstream>
 #include <sstream>
@@ -26,7 +27,7 @@ struct Albedo {
 };
 
 inline std::vector<Albedo> albedo_values() {
-    std::ifstream file(std::string(LIGHTSWITCH_TESTS_DIR) + "/data/bsdf/albedo.txt");
+    std::ifstream file(test::folder() + "/data/bsdf/albedo.txt");
     std::vector<Albedo> rows;
     for (std::string line, facets; std::getline(file, line);) {
         if (line.starts_with('#')) continue;

@@ -6,6 +6,7 @@
 #include <lightswitch/bsdf/microfacets.hpp>
 
 #include "../support/relative.hpp"
+#include "support/paths.hpp"
 
 #include <doctest/doctest.h>
 
@@ -58,7 +59,7 @@ struct MitsubaModel {
 
 /// The table tests/data/bsdf/NAME.txt.
 inline std::vector<MitsubaModel> mitsuba_models(const std::string& name) {
-    const std::string path = std::string(LIGHTSWITCH_TESTS_DIR) + "/data/bsdf/" + name + ".txt";
+    const std::string path = test::folder() + "/data/bsdf/" + name + ".txt";
     std::ifstream file(path);
     if (!file) throw std::runtime_error("cannot read " + path);
     std::vector<MitsubaModel> models;

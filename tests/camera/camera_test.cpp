@@ -24,7 +24,7 @@ struct Segment {
 };
 
 /// Render space of a scene between the corners of a cube.
-struct Place {
+struct Spot {
     DVec3 center{0};
     double half = 8;
 
@@ -368,7 +368,7 @@ CameraDescription describe(const Pin& pin) {
 
 TEST_CASE("camera: rays are those of Mitsuba") {
     for (const Pin& pin : pins) {
-        const Segment ray = Place{}.ray(describe(pin), film(pin.width, pin.height), pin.pixel, pin.lens);
+        const Segment ray = Spot{}.ray(describe(pin), film(pin.width, pin.height), pin.pixel, pin.lens);
         CAPTURE(&pin - pins);
         CHECK(glm::length(ray.direction - pin.direction) < 1e-5);
         CHECK(glm::length(ray.origin - pin.origin) < 1e-5);
@@ -381,7 +381,7 @@ TEST_CASE("camera: what is far from the scene sees it like what is near") {
     // those of the same camera in double precision do. One step of float at that distance is 1.
     const double distance = 1e7;
     for (const DVec3& center : {DVec3(0), DVec3(3e5, -7e6, 2e4)}) {
-        const Place place{center, 0.5};
+        const Spot place{center, 0.5};
         const DVec3 view = glm::normalize(DVec3(0.3, -0.5, 0.8)), eye = center - view * distance;
         CameraDescription camera;
         camera.to_world = CameraDescription::look_at(eye, center, {0, 1, 0});
@@ -405,7 +405,7 @@ TEST_CASE("camera: what is far from the scene sees it like what is near") {
 
 TEST_CASE("camera: near and far clip along the optical axis, also of a camera that is far away") {
     for (const double distance : {2.0, 20.0, 1e6}) {
-        const Place place{{0, 0, 0}, 1};
+        const Spot place{{0, 0, 0}, 1};
         CameraDescription camera;
         camera.to_world = CameraDescription::look_at({0, 0, distance}, {0, 0, 0}, {0, 1, 0});
         camera.fov = glm::degrees(2 * std::atan(1 / distance));
@@ -428,7 +428,7 @@ TEST_CASE("camera: near and far clip along the optical axis, also of a camera th
     CameraDescription camera;
     camera.to_world = CameraDescription::look_at({0, 0, 100}, {0, 0, 0}, {0, 1, 0});
     camera.far_clip = 50;
-    CHECK(Place{}.ray(camera, film(10, 10), {5, 5}).length == 0);
+    CHECK(Spot{}.ray(camera, film(10, 10), {5, 5}).length == 0);
 }
 
 TEST_CASE("camera: all rays through a point of the film meet on the plane in focus") {
@@ -448,8 +448,8 @@ TEST_CASE("camera: all rays through a point of the film meet on the plane in foc
             return ray.origin + ray.direction * (glm::dot(eye + 4.0 * forward - ray.origin, forward) /
                                                  glm::dot(ray.direction, forward));
         };
-        const Segment ray = Place{}.ray(camera, film(8, 8), pixel, random.next_2d());
-        worst = std::max(worst, glm::length(at_focus(ray) - at_focus(Place{}.ray(pinhole, film(8, 8), pixel))));
+        const Segment ray = Spot{}.ray(camera, film(8, 8), pixel, random.next_2d());
+        worst = std::max(worst, glm::length(at_focus(ray) - at_focus(Spot{}.ray(pinhole, film(8, 8), pixel))));
         const DVec3 on_lens = ray.origin - eye;
         worst = std::max(worst, std::abs(glm::dot(on_lens, forward)));
         widest = std::max(widest, glm::length(on_lens));
@@ -468,7 +468,7 @@ TEST_CASE("camera: rows go down, columns to the right, and pixels are square") {
     camera.fov = 90;
     camera.fov_axis = Axis::y;
     const auto on_plane = [&](float x, float y) {
-        const Segment ray = Place{}.ray(camera, film(30, 20), {x, y});
+        const Segment ray = Spot{}.ray(camera, film(30, 20), {x, y});
         return ray.origin - ray.direction * (ray.origin.z / ray.direction.z);
     };
     CHECK(glm::length(on_plane(15, 10)) < 1e-5);

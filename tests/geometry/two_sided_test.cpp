@@ -13,7 +13,7 @@ namespace {
 
 /// A square of that material around the origin, which faces +z, under white light; the camera looks along -z from
 /// `eye_z` above it, or along +z from below.
-LibraryDescription square_seen_from(double eye_z, bool two_sided, const LibraryBsdf& bsdf = Lambert{Rgb(0.5f)}) {
+LibraryDescription square_seen_from(double eye_z, bool two_sided, const AnyMaterial& bsdf = Lambert{Rgb(0.5f)}) {
     LibraryDescription scene;
     Mesh mesh;
     mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};

@@ -3,8 +3,9 @@
 
 #include "load/files.hpp"
 
-#include <lightswitch/load/mitsuba.hpp>
-#include <lightswitch/load/obj_scene.hpp>
+#include <lightswitch/load/obj.hpp>
+#include <lightswitch/load/ply.hpp>
+#include <lightswitch/load/scene_file.hpp>
 
 using namespace lightswitch;
 using namespace lightswitch::test;

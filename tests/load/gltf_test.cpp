@@ -1,6 +1,6 @@
 #include "load/gltf_files.hpp"
 
-#include <lightswitch/load/gltf.hpp>
+#include <lightswitch/load/scene_file.hpp>
 
 using namespace lightswitch;
 using namespace lightswitch::test;
@@ -74,9 +74,9 @@ const LibraryDescription::NamedMaterial& surface_model(const LibraryDescription&
 }
 Principled principled(const LibraryDescription& scene, const Vec2& uv = {}) {
     const auto& bsdf = surface_model(scene).bsdf;
-    if (const auto* plain = std::get_if<Principled>(&bsdf)) return *plain;
+    if (const auto* plain = bsdf.get<Principled>()) return *plain;
     const SurfacePoint point{};
-    return std::get<Textured<Principled>>(bsdf).at({uv, point});
+    return bsdf.as<Textured<Principled>>().at({uv, point});
 }
 template <class Layer>
 const Layer* layer_of(const LibraryDescription& scene) {
@@ -325,7 +325,7 @@ TEST_CASE("emission: factor, texture and strength") {
         "extensions": {"KHR_materials_unlit": {}}})"),
                  &notices);
     CHECK(*scene.shapes[0].emission == Rgb(1, 0.5f, 0.25f));
-    CHECK(std::get<Lambert>(surface_model(scene).bsdf).reflectance == Rgb(0));
+    CHECK(surface_model(scene).bsdf.as<Lambert>().reflectance == Rgb(0));
     CHECK(contains(joined(notices), "unlit"));
 }
 

@@ -1,6 +1,7 @@
 #include "load/files.hpp"
 
-#include <lightswitch/load/mitsuba.hpp>
+#include <lightswitch/load/mitsuba_camera.hpp>
+#include <lightswitch/load/scene_file.hpp>
 
 using namespace lightswitch;
 using namespace lightswitch::test;
@@ -71,68 +72,61 @@ TEST_CASE("a strict reading tells all problems of a file, in the order of readin
 
 TEST_CASE("surface models that are not known are the one inside, or diffuse") {
     const std::string inside = "the bsdf inside takes its place", diffuse = "it is diffuse";
-    CHECK(std::get<Lambert>(material("<bsdf type=\"hair\"/>", diffuse).bsdf).reflectance == Rgb(0.5f));
-    CHECK(std::get<Lambert>(
-              material("<bsdf type=\"hk\"><rgb name=\"reflectance\" value=\"0.1 0.2 0.3\"/></bsdf>", diffuse).bsdf)
+    CHECK(material("<bsdf type=\"hair\"/>", diffuse).bsdf.as<Lambert>().reflectance == Rgb(0.5f));
+    CHECK(material("<bsdf type=\"hk\"><rgb name=\"reflectance\" value=\"0.1 0.2 0.3\"/></bsdf>", diffuse)
+              .bsdf.as<Lambert>()
               .reflectance == Rgb(0.1f, 0.2f, 0.3f));
     for (const char* type : {"coating", "roughcoating", "sssbrdf"})
-        CHECK(std::holds_alternative<Conductor>(
-            material("<bsdf type=\"" + std::string(type) + "\">" + metal + "</bsdf>", inside).bsdf));
+        CHECK(material("<bsdf type=\"" + std::string(type) + "\">" + metal + "</bsdf>", inside).bsdf.get<Conductor>());
     const Read both = lenient("<shape type=\"cube\"><bsdf type=\"coating\"><bsdf type=\"varnish\">" + metal +
                               "</bsdf></bsdf></shape>");
     CHECK(both.problems.size() == 2);
-    CHECK(std::holds_alternative<Conductor>(both.scene.materials[both.scene.shapes[0].material].bsdf));
+    CHECK(both.scene.materials[both.scene.shapes[0].material].bsdf.get<Conductor>());
 }
 
 TEST_CASE("layers that cannot be are left out") {
     const std::string inside = "the bsdf inside takes its place";
-    CHECK(std::holds_alternative<Dielectric>(
-        material("<bsdf type=\"twosided\"><bsdf type=\"dielectric\"/></bsdf>", inside).bsdf));
+    CHECK(material("<bsdf type=\"twosided\"><bsdf type=\"dielectric\"/></bsdf>", inside).bsdf.get<Dielectric>());
     CHECK(material("<bsdf type=\"twosided\"><bsdf type=\"twosided\">" + metal + "</bsdf></bsdf>", inside).two_sided);
-    CHECK(std::holds_alternative<Conductor>(
-        material("<bsdf type=\"normalmap\"><texture name=\"normalmap\" type=\"bitmap\"><string name=\"filename\" "
-                 "value=\"no.png\"/></texture>" +
-                     metal + "</bsdf>",
-                 inside)
-            .bsdf));
-    CHECK(std::holds_alternative<Conductor>(
-        material("<bsdf type=\"mask\"><rgb name=\"opacity\" value=\"3\"/>" + metal + "</bsdf>", inside).bsdf));
+    CHECK(material("<bsdf type=\"normalmap\"><texture name=\"normalmap\" type=\"bitmap\"><string name=\"filename\" "
+                   "value=\"no.png\"/></texture>" +
+                       metal + "</bsdf>",
+                   inside)
+              .bsdf.get<Conductor>());
+    CHECK(material("<bsdf type=\"mask\"><rgb name=\"opacity\" value=\"3\"/>" + metal + "</bsdf>", inside)
+              .bsdf.get<Conductor>());
     // Two that contain each other end in grey.
     const Read loop = lenient(
         "<bsdf type=\"twosided\" id=\"a\"><ref id=\"b\"/></bsdf><bsdf type=\"twosided\" id=\"b\"><ref id=\"a\"/></bsdf>"
         "<shape type=\"cube\"><ref id=\"a\"/></shape>");
-    CHECK(std::holds_alternative<Lambert>(loop.scene.materials[loop.scene.shapes[0].material].bsdf));
+    CHECK(loop.scene.materials[loop.scene.shapes[0].material].bsdf.get<Lambert>());
 }
 
 TEST_CASE("values out of range are the nearest, or the default") {
-    CHECK(
-        std::get<Lambert>(
-            material("<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"1.5 0.5 0.5\"/></bsdf>", "it is 1").bsdf)
-            .reflectance == Rgb(1, 0.5f, 0.5f));
-    CHECK(std::get<RoughConductor>(
-              material("<bsdf type=\"roughconductor\"><float name=\"alpha\" value=\"0\"/></bsdf>", "it is 0.0001").bsdf)
+    CHECK(material("<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"1.5 0.5 0.5\"/></bsdf>", "it is 1")
+              .bsdf.as<Lambert>()
+              .reflectance == Rgb(1, 0.5f, 0.5f));
+    CHECK(material("<bsdf type=\"roughconductor\"><float name=\"alpha\" value=\"0\"/></bsdf>", "it is 0.0001")
+              .bsdf.as<RoughConductor>()
               .alpha_u == 1e-4f);
-    CHECK(std::get<RoughPlastic>(
-              material("<bsdf type=\"roughplastic\"><float name=\"alpha\" value=\"7\"/></bsdf>", "it is 1").bsdf)
+    CHECK(material("<bsdf type=\"roughplastic\"><float name=\"alpha\" value=\"7\"/></bsdf>", "it is 1")
+              .bsdf.as<RoughPlastic>()
               .alpha == 1);
-    CHECK(std::get<Conductor>(material("<bsdf type=\"conductor\"><rgb name=\"k\" value=\"1 0 1\"/></bsdf>",
-                                       "it reflects everything there")
-                                  .bsdf)
+    CHECK(material("<bsdf type=\"conductor\"><rgb name=\"k\" value=\"1 0 1\"/></bsdf>", "it reflects everything there")
+              .bsdf.as<Conductor>()
               .k == Rgb(1));
-    CHECK(
-        std::get<RoughConductor>(
-            material("<bsdf type=\"roughconductor\"><float name=\"alpha\" value=\"x\"/></bsdf>", "it is ignored").bsdf)
-            .alpha_u == 0.1f);
-    CHECK(std::get<Dielectric>(
-              material("<bsdf type=\"dielectric\"><string name=\"int_ior\" value=\"jelly\"/></bsdf>", "it is \"bk7\"")
-                  .bsdf)
+    CHECK(material("<bsdf type=\"roughconductor\"><float name=\"alpha\" value=\"x\"/></bsdf>", "it is ignored")
+              .bsdf.as<RoughConductor>()
+              .alpha_u == 0.1f);
+    CHECK(material("<bsdf type=\"dielectric\"><string name=\"int_ior\" value=\"jelly\"/></bsdf>", "it is \"bk7\"")
+              .bsdf.as<Dielectric>()
               .eta > 1.5f);
-    const auto phong = std::get<Textured<ModifiedPhong>>(
+    const auto phong =
         material(
             "<bsdf type=\"phong\"><texture type=\"checkerboard\" name=\"diffuse_reflectance\"><rgb name=\"color0\" "
             "value=\"0.9\"/></texture><rgb name=\"specular_reflectance\" value=\"0.4\"/></bsdf>",
             "its lobe is darkened")
-            .bsdf);
+            .bsdf.as<Textured<ModifiedPhong>>();
     CHECK(phong.problem().empty());
 }
 
@@ -142,7 +136,7 @@ TEST_CASE("textures that are not known or not there are middle grey") {
           "<texture name=\"reflectance\" type=\"bitmap\"><string name=\"filename\" "
           "value=\"no.png\"/></texture>"}) {
         const auto read = material("<bsdf type=\"diffuse\">" + std::string(texture) + "</bsdf>", "it is middle grey");
-        CHECK(std::get<Textured<Lambert>>(read.bsdf).at({Vec2(0.3f), SurfacePoint{}}).reflectance == Rgb(0.5f));
+        CHECK(read.bsdf.as<Textured<Lambert>>().at({Vec2(0.3f), SurfacePoint{}}).reflectance == Rgb(0.5f));
     }
 }
 
@@ -173,7 +167,7 @@ TEST_CASE("lamps that cannot be are left out, and masks on them") {
     CHECK_FALSE(read.scene.shapes[0].emission);
     CHECK_FALSE(read.scene.shapes[1].emission);
     CHECK(read.scene.shapes[2].emission == Rgb(1));
-    CHECK(std::holds_alternative<Conductor>(read.scene.materials[read.scene.shapes[2].material].bsdf));
+    CHECK(read.scene.materials[read.scene.shapes[2].material].bsdf.get<Conductor>());
     CHECK(read.scene.shapes[3].emission == Rgb(0.5f));
     CHECK(read.problems.size() == 7);
     const Read sky = lenient("<emitter type=\"sunsky\"><float name=\"turbidity\" value=\"3\"/></emitter>");
@@ -209,7 +203,7 @@ TEST_CASE("what is not understood in the file itself is passed over") {
         "<shape type=\"cube\"><ref id=\"a\"/><ref id=\"none\"/><fog density=\"1\"/></shape><float name=\"x\" "
         "value=\"1\"/>",
         "7");
-    CHECK(std::holds_alternative<Lambert>(read.scene.materials[read.scene.shapes.at(0).material].bsdf));
+    CHECK(read.scene.materials[read.scene.shapes.at(0).material].bsdf.get<Lambert>());
     CHECK(read.problems.size() == 11);
     CHECK(lenient("<shape type=\"cube\"><medium type=\"homogeneous\" name=\"interior\"><float name=\"albedo\" "
                   "value=\"1\"/></medium></shape>")

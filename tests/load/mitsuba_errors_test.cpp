@@ -1,6 +1,6 @@
 #include "load/files.hpp"
 
-#include <lightswitch/load/mitsuba.hpp>
+#include <lightswitch/load/scene_file.hpp>
 
 #include <chrono>
 

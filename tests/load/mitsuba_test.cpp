@@ -1,7 +1,9 @@
 #include "../support/relative.hpp"
 #include "load/files.hpp"
+#include "support/paths.hpp"
 
-#include <lightswitch/load/mitsuba.hpp>
+#include <lightswitch/load/scene_file.hpp>
+#include <lightswitch/load/spectrum.hpp>
 
 using namespace lightswitch;
 using namespace lightswitch::test;
@@ -26,7 +28,7 @@ LibraryDescription scene(const std::string& text, const std::map<std::string, st
     return parse(std::string(camera) + text, defines);
 }
 
-LibraryBsdf bsdf(const std::string& text) {
+AnyMaterial bsdf(const std::string& text) {
     const auto result = scene("<shape type=\"rectangle\">" + text + "</shape>");
     return result.materials.at(result.shapes.at(0).material).bsdf;
 }
@@ -71,14 +73,14 @@ void check_close(const DMat4& a, const DMat4& b, double tolerance) {
 }  // namespace
 
 TEST_CASE("the reference scenes load with their values") {
-    const std::filesystem::path folder = std::filesystem::path(LIGHTSWITCH_TESTS_DIR) / "data/cbox";
+    const std::filesystem::path folder = std::filesystem::path(test::folder()) / "data/cbox";
     const auto box = load_mitsuba(folder / "cbox.xml");
     CHECK(box.name == "cbox");
     CHECK(box.shapes.size() == 5);
     CHECK(box.materials.size() == 5);  // white serves two shapes, and there is the inside of the two-sided one
     CHECK(box.shapes[1].material == box.shapes[4].material);
     CHECK(box.shapes[0].emission == Rgb(18.387f, 13.9873f, 6.75357f));
-    CHECK(std::get<Lambert>(box.materials[0].bsdf).reflectance == Rgb(0.885809f, 0.698859f, 0.666422f));
+    CHECK(box.materials[0].bsdf.as<Lambert>().reflectance == Rgb(0.885809f, 0.698859f, 0.666422f));
     CHECK(box.shapes[4].origin.line == 18);
     CHECK(box.shapes[4].origin.element == "<shape type=\"obj\">");
     CHECK(std::get<Mesh>(box.shapes[4].geometry).normals.empty());
@@ -98,12 +100,12 @@ TEST_CASE("the reference scenes load with their values") {
     const auto& glass = std::get<Sphere>(spheres.shapes[4].geometry);
     CHECK(glass.center == DVec3(0.42, -0.62, 0.35));
     CHECK(glass.radius == 0.38);
-    CHECK(std::get<Dielectric>(spheres.materials[spheres.shapes[4].material].bsdf).eta == 1.5f);
-    CHECK(std::get<Conductor>(spheres.materials[spheres.shapes[5].material].bsdf).reflectance == Rgb(0.9f));
+    CHECK(spheres.materials[spheres.shapes[4].material].bsdf.as<Dielectric>().eta == 1.5f);
+    CHECK(spheres.materials[spheres.shapes[5].material].bsdf.as<Conductor>().reflectance == Rgb(0.9f));
 
     const auto mis = load_mitsuba(folder / "veach-mis.xml");
     CHECK(mis.shapes.size() == 10);
-    CHECK(std::get<RoughConductor>(mis.materials[mis.shapes[5].material].bsdf).alpha_u == 0.005f);
+    CHECK(mis.materials[mis.shapes[5].material].bsdf.as<RoughConductor>().alpha_u == 0.005f);
 }
 
 TEST_CASE("what a scene leaves out has Mitsuba's defaults") {
@@ -123,50 +125,54 @@ TEST_CASE("what a scene leaves out has Mitsuba's defaults") {
     CHECK(path.max_depth == -1);
     CHECK(path.rr_depth == 5);
 
-    CHECK(std::get<Lambert>(bsdf("")).reflectance == Rgb(0.5f));
-    CHECK(std::get<Lambert>(bsdf("<bsdf type=\"diffuse\"/>")).reflectance == Rgb(0.5f));
+    CHECK(bsdf("").as<Lambert>().reflectance == Rgb(0.5f));
+    CHECK(bsdf("<bsdf type=\"diffuse\"/>").as<Lambert>().reflectance == Rgb(0.5f));
     // A light without a BSDF is black.
     const auto light = scene("<shape type=\"rectangle\"/><shape type=\"rectangle\"><emitter type=\"area\"/></shape>");
-    CHECK(std::get<Lambert>(light.materials[light.shapes[0].material].bsdf).reflectance == Rgb(0.5f));
-    CHECK(std::get<Lambert>(light.materials[light.shapes[1].material].bsdf).reflectance == Rgb(0));
+    CHECK(light.materials[light.shapes[0].material].bsdf.as<Lambert>().reflectance == Rgb(0.5f));
+    CHECK(light.materials[light.shapes[1].material].bsdf.as<Lambert>().reflectance == Rgb(0));
     CHECK(light.shapes[1].emission == Rgb(1));
     CHECK_FALSE(light.shapes[0].emission);
-    CHECK(std::get<Dielectric>(bsdf("<bsdf type=\"dielectric\"/>")).eta == relative(1.50418, 1e-5));
-    const auto metal = std::get<Conductor>(bsdf("<bsdf type=\"conductor\"/>"));
+    CHECK(bsdf("<bsdf type=\"dielectric\"/>").as<Dielectric>().eta == relative(1.50418, 1e-5));
+    const auto metal = bsdf("<bsdf type=\"conductor\"/>").as<Conductor>();
     CHECK(metal.eta == Rgb(0));
     CHECK(metal.k == Rgb(1));
     CHECK(metal.reflectance == Rgb(1));
-    CHECK(std::get<RoughConductor>(
-              bsdf("<bsdf type=\"roughconductor\"><string name=\"distribution\" value=\"GGX\"/></bsdf>"))
+    CHECK(bsdf("<bsdf type=\"roughconductor\"><string name=\"distribution\" value=\"GGX\"/></bsdf>")
+              .as<RoughConductor>()
               .alpha_u == 0.1f);
     const auto sampler = parse("<sensor type=\"perspective\"><sampler type=\"multijitter\"/></sensor>");
     CHECK(sampler.samples == 4);
 }
 
 TEST_CASE("BSDFs are read with their parameters") {
-    CHECK(std::get<Lambert>(bsdf("<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.1, .2 0.3\"/></bsdf>"))
+    CHECK(bsdf("<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.1, .2 0.3\"/></bsdf>")
+              .as<Lambert>()
               .reflectance == Rgb(0.1f, 0.2f, 0.3f));
     for (const char* grey :
          {"<rgb name=\"reflectance\" value=\"0.25\"/>", "<float name=\"reflectance\" value=\" 0.25 \"/>",
           "<spectrum name=\"reflectance\" value=\"0.25\"/>"})
-        CHECK(std::get<Lambert>(bsdf(std::string("<bsdf type=\"diffuse\">") + grey + "</bsdf>")).reflectance ==
-              Rgb(0.25f));
-    const auto glass = std::get<Dielectric>(bsdf(
-        "<bsdf type=\"dielectric\"><string name=\"int_ior\" value=\"Water Ice\"/><float name=\"ext_ior\" value=\"1\"/>"
-        "<rgb name=\"specular_reflectance\" value=\"0.5\"/><rgb name=\"specular_transmittance\" "
-        "value=\"0.25\"/></bsdf>"));
+        CHECK(bsdf(std::string("<bsdf type=\"diffuse\">") + grey + "</bsdf>").as<Lambert>().reflectance == Rgb(0.25f));
+    const auto glass = bsdf(
+                           "<bsdf type=\"dielectric\"><string name=\"int_ior\" value=\"Water Ice\"/><float "
+                           "name=\"ext_ior\" value=\"1\"/>"
+                           "<rgb name=\"specular_reflectance\" value=\"0.5\"/><rgb name=\"specular_transmittance\" "
+                           "value=\"0.25\"/></bsdf>")
+                           .as<Dielectric>();
     CHECK(glass.eta == 1.31f);
     CHECK(glass.reflectance == Rgb(0.5f));
     CHECK(glass.transmittance == Rgb(0.25f));
-    const auto rough = std::get<RoughConductor>(
-        bsdf("<bsdf type=\"twosided\"><bsdf type=\"roughconductor\"><string name=\"distribution\" value=\"ggx\"/>"
-             "<float name=\"alpha_u\" value=\"0.3\"/><float name=\"alpha_v\" value=\"0.3\"/><rgb name=\"eta\" "
-             "value=\"1,2,3\"/>"
-             "<float name=\"k\" value=\"4\"/><boolean name=\"sample_visible\" value=\"false\"/></bsdf></bsdf>"));
+    const auto rough =
+        bsdf(
+            "<bsdf type=\"twosided\"><bsdf type=\"roughconductor\"><string name=\"distribution\" value=\"ggx\"/>"
+            "<float name=\"alpha_u\" value=\"0.3\"/><float name=\"alpha_v\" value=\"0.3\"/><rgb name=\"eta\" "
+            "value=\"1,2,3\"/>"
+            "<float name=\"k\" value=\"4\"/><boolean name=\"sample_visible\" value=\"false\"/></bsdf></bsdf>")
+            .as<RoughConductor>();
     CHECK(rough.alpha_u == 0.3f);
     CHECK(rough.eta == Rgb(1, 2, 3));
     CHECK(rough.k == Rgb(4));
-    CHECK(std::holds_alternative<Conductor>(bsdf("<bsdf type=\"twosided\"><bsdf type=\"conductor\"/></bsdf>")));
+    CHECK(bsdf("<bsdf type=\"twosided\"><bsdf type=\"conductor\"/></bsdf>").get<Conductor>());
 }
 
 TEST_CASE("references go forward, and into other objects") {
@@ -176,8 +182,8 @@ TEST_CASE("references go forward, and into other objects") {
         "<bsdf type=\"twosided\" id=\"later\"><bsdf type=\"diffuse\" id=\"inner\"><float name=\"reflectance\" "
         "value=\"0.7\"/></bsdf>"
         "</bsdf>");
-    CHECK(std::get<Lambert>(forward.materials[forward.shapes[0].material].bsdf).reflectance == Rgb(0.7f));
-    CHECK(std::get<Lambert>(forward.materials[forward.shapes[1].material].bsdf).reflectance == Rgb(0.7f));
+    CHECK(forward.materials[forward.shapes[0].material].bsdf.as<Lambert>().reflectance == Rgb(0.7f));
+    CHECK(forward.materials[forward.shapes[1].material].bsdf.as<Lambert>().reflectance == Rgb(0.7f));
     CHECK(forward.materials[forward.shapes[0].material].two_sided);
     CHECK_FALSE(forward.materials[forward.shapes[1].material].two_sided);
     CHECK(forward.materials.size() == 2);
@@ -191,7 +197,7 @@ TEST_CASE("an alias is another id of an element above it") {
         "<bsdf type=\"diffuse\" id=\"white\"><float name=\"reflectance\" value=\"0.7\"/></bsdf>"
         "<alias id=\"white\" as=\"wall\"/><alias id=\"wall\" as=\"floor\"/>"
         "<shape type=\"cube\"><ref id=\"floor\"/></shape><shape type=\"disk\"><ref id=\"white\"/></shape>");
-    CHECK(std::get<Lambert>(result.materials.at(result.shapes[0].material).bsdf).reflectance == Rgb(0.7f));
+    CHECK(result.materials.at(result.shapes[0].material).bsdf.as<Lambert>().reflectance == Rgb(0.7f));
     CHECK(result.materials.size() == 1);
 }
 
@@ -354,9 +360,9 @@ TEST_CASE("parameters of the file are replaced") {
         "<default name=\"r\" value=\"0.25\"/><default name=\"r2\" value=\"0.$five\"/><default name=\"r\" value=\"9\"/>"
         "<shape type=\"cube\"><bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"$r, $r2, $r\"/></bsdf></shape>";
     const auto result = scene("<default name=\"five\" value=\"5\"/>" + text);
-    CHECK(std::get<Lambert>(result.materials[0].bsdf).reflectance == Rgb(0.25f, 0.5f, 0.25f));
+    CHECK(result.materials[0].bsdf.as<Lambert>().reflectance == Rgb(0.25f, 0.5f, 0.25f));
     const auto defined = scene("<default name=\"five\" value=\"5\"/>" + text, {{"r", "1"}});
-    CHECK(std::get<Lambert>(defined.materials[0].bsdf).reflectance == Rgb(1, 0.5f, 1));
+    CHECK(defined.materials[0].bsdf.as<Lambert>().reflectance == Rgb(1, 0.5f, 1));
     CHECK(contains(message_of([&] { scene("", {{"spp", "1"}}); }), "room.xml: the parameter \"spp\" is set, but"));
     CHECK(contains(message_of([&] { scene(text); }), "the parameter \"$five\" is not defined"));
     CHECK(contains(message_of([&] {
@@ -370,7 +376,7 @@ TEST_CASE("parameters of the file are replaced") {
 
 TEST_CASE("colours are read in every form") {
     const auto reflectance = [](const std::string& color) {
-        return std::get<Lambert>(bsdf("<bsdf type=\"diffuse\">" + color + "</bsdf>")).reflectance;
+        return bsdf("<bsdf type=\"diffuse\">" + color + "</bsdf>").as<Lambert>().reflectance;
     };
     // Mitsuba 0.6 and 2 take hexadecimal digits of <rgb> for linear values.
     CHECK(reflectance("<rgb name=\"reflectance\" value=\"#ff8000\"/>") == Rgb(1, 128.0f / 255, 0));
@@ -471,8 +477,8 @@ TEST_CASE("files are included, with their defaults, ids and versions") {
                         "<shape type=\"disk\"><include filename=\"parts\\glass.xml\"/></shape></scene>");
     const auto result = load_mitsuba(path);
     REQUIRE(result.shapes.size() == 3);
-    CHECK(std::get<Lambert>(result.materials[result.shapes[1].material].bsdf).reflectance == Rgb(0.75f));
-    CHECK(std::get<Dielectric>(result.materials[result.shapes[2].material].bsdf).eta == 2);
+    CHECK(result.materials[result.shapes[1].material].bsdf.as<Lambert>().reflectance == Rgb(0.75f));
+    CHECK(result.materials[result.shapes[2].material].bsdf.as<Dielectric>().eta == 2);
     CHECK(result.files.size() == 3);
     CHECK(contains(result.shapes[0].origin.file, "shapes.xml"));
 

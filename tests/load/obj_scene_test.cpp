@@ -1,9 +1,12 @@
 // OBJ files with materials as scenes, and bare meshes.
 
 #include "load/files.hpp"
+#include "support/paths.hpp"
 
 #include <lightswitch/film/image_io.hpp>
-#include <lightswitch/load/obj_scene.hpp>
+#include <lightswitch/load/mtl.hpp>
+#include <lightswitch/load/obj.hpp>
+#include <lightswitch/load/scene_file.hpp>
 #include <lightswitch/scene/any_scene.hpp>
 
 using namespace lightswitch;
@@ -41,7 +44,7 @@ public:
     }
     template <class B>
     const B* model(const LibraryDescription::NamedMaterial& of) const {
-        return of.layer ? nullptr : std::get_if<B>(&of.bsdf);
+        return of.layer ? nullptr : of.bsdf.template get<B>();
     }
     template <class B>
     const B* model() const {
@@ -69,7 +72,7 @@ std::string with(std::string_view statements) { return "newmtl m\n" + std::strin
 /// The model of a textured material at a place.
 template <class B>
 B at(const LibraryDescription::NamedMaterial& material, const Vec2& uv) {
-    const auto* textured = std::get_if<Textured<B>>(&material.bsdf);
+    const auto* textured = material.bsdf.template get<Textured<B>>();
     REQUIRE(textured);
     const SurfacePoint point{};
     return textured->at({uv, point});
@@ -106,7 +109,7 @@ TEST_CASE("an OBJ scene has a shape for each material in use, in order") {
 }
 
 TEST_CASE("the same triangles come out of an OBJ scene and an OBJ mesh") {
-    const auto path = std::filesystem::path(LIGHTSWITCH_TESTS_DIR) / "data/mesh-files/mixed_normals.obj";
+    const auto path = std::filesystem::path(test::folder()) / "data/mesh-files/mixed_normals.obj";
     const LibraryDescription scene = load_obj_scene(path);
     const Mesh mesh = load_obj(path), part = std::get<Mesh>(scene.shapes.at(0).geometry);
     CHECK(part.positions == mesh.positions);
@@ -302,8 +305,8 @@ TEST_CASE("files are found by names of other systems") {
         "b.obj", "mtllib 1.mtl 2.mtl 1.mtl\n" + std::string(a_square) + "usemtl m\nf 1 2 3\nusemtl n\nf 1 3 4\n");
     notices.clear();
     const LibraryDescription both = load_obj_scene(two, &notices);
-    CHECK(std::get<Lambert>(both.materials[both.shapes[0].material].bsdf).reflectance == Rgb(0.125f));
-    CHECK(std::get<Lambert>(both.materials[both.shapes[1].material].bsdf).reflectance == Rgb(0.25f));
+    CHECK(both.materials[both.shapes[0].material].bsdf.as<Lambert>().reflectance == Rgb(0.125f));
+    CHECK(both.materials[both.shapes[1].material].bsdf.as<Lambert>().reflectance == Rgb(0.25f));
     CHECK(contains(notices.at(0), "2.mtl:3: a material of that name is known already"));
 }
 
@@ -387,7 +390,7 @@ TEST_CASE("a bare mesh is a grey object under the sky") {
         REQUIRE(scene.shapes.size() == 1);
         CHECK(std::get<Mesh>(scene.shapes[0].geometry).triangles.size() == 1);
         const auto& material = scene.materials[scene.shapes[0].material];
-        CHECK(std::get<Lambert>(material.bsdf).reflectance == Rgb(0.5f));
+        CHECK(material.bsdf.as<Lambert>().reflectance == Rgb(0.5f));
         CHECK(material.two_sided);
         CHECK(scene.files == std::vector{path.string()});
         CHECK_NOTHROW(build_any(scene));

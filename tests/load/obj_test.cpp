@@ -1,4 +1,5 @@
 #include "load/files.hpp"
+#include "support/paths.hpp"
 
 #include <lightswitch/load/obj.hpp>
 #include <lightswitch/load/ply.hpp>
@@ -123,7 +124,7 @@ TEST_CASE("mesh files of other programs are all the same square") {
     };
     for (const Case& c : cases)
         for (const FileNormals use : {FileNormals::use, FileNormals::ignore}) {
-            const auto path = std::filesystem::path(LIGHTSWITCH_TESTS_DIR) / "data/mesh-files" / c.file;
+            const auto path = std::filesystem::path(test::folder()) / "data/mesh-files" / c.file;
             Notices notices;
             const Mesh mesh =
                 path.extension() == ".obj" ? load_obj(path, use, &notices) : load_ply(path, use, &notices);

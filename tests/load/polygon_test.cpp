@@ -1,4 +1,5 @@
 #include "load/files.hpp"
+#include "support/paths.hpp"
 #include "support/relative.hpp"
 
 #include <lightswitch/load/obj.hpp>
@@ -145,7 +146,7 @@ TEST_CASE("a polygon has its area, whichever corner comes first and whichever wa
 }
 
 TEST_CASE("concave polygons in files have their area, whichever corner comes first") {
-    const std::filesystem::path data = std::filesystem::path(LIGHTSWITCH_TESTS_DIR) / "data/concave";
+    const std::filesystem::path data = std::filesystem::path(test::folder()) / "data/concave";
     const Folder folder;
     for (const auto& [name, area] : {std::pair("arrow.obj", 1.3), std::pair("star.obj", 1.17557)}) {
         const Outline outline = load_obj(data / name).positions;

@@ -1,4 +1,5 @@
 #include "load/files.hpp"
+#include "support/paths.hpp"
 
 #include <lightswitch/load/serialized.hpp>
 
@@ -75,7 +76,7 @@ std::string error_of(std::string_view bytes, int shape = 0) {
 TEST_CASE("files that Mitsuba reads give the same meshes") {
     for (const char* name : {"two.serialized", "old.serialized"}) {
         CAPTURE(name);
-        const auto path = std::filesystem::path(LIGHTSWITCH_TESTS_DIR) / "data/mesh-files" / name;
+        const auto path = std::filesystem::path(test::folder()) / "data/mesh-files" / name;
         const Mesh quad = load_serialized(path);
         CHECK(quad.positions == std::vector<DVec3>{{0, 0, 0}, {2, 0, 0}, {2, 3, 0}, {0, 3, 0.5}});
         CHECK(quad.triangles == std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}});

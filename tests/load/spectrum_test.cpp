@@ -1,4 +1,5 @@
 #include "load/files.hpp"
+#include "support/paths.hpp"
 #include "support/relative.hpp"
 
 #include <lightswitch/load/spectrum.hpp>
@@ -21,7 +22,7 @@ struct Expected {
 };
 
 std::vector<Expected> expected_colors() {
-    const std::string bytes = read_file(LIGHTSWITCH_TESTS_DIR "/data/spectra/spectra.txt", 1 << 20);
+    const std::string bytes = read_file(test::folder() + "/data/spectra/spectra.txt", 1 << 20);
     std::vector<Expected> result;
     for (std::string_view text = bytes; !text.empty();) {
         std::string_view line = detail::next_line(text);
@@ -48,7 +49,7 @@ TEST_CASE("spectra have the colours that Mitsuba gives them") {
         CAPTURE(use);
         CAPTURE(text);
         const Spectrum spectrum =
-            text == "lamp.spd" ? load_spectrum(LIGHTSWITCH_TESTS_DIR "/data/spectra/lamp.spd") : parse(text);
+            text == "lamp.spd" ? load_spectrum(test::folder() + "/data/spectra/lamp.spd") : parse(text);
         const Rgb found = spectrum_to_rgb(spectrum, uses.at(use));
         // Mitsuba's tables are of floats; where a channel is a small difference, that is large beside it.
         const double largest = std::max({std::abs(rgb.x), std::abs(rgb.y), std::abs(rgb.z)});

@@ -46,7 +46,7 @@ std::string ascii(const std::vector<Corners>& facets) {
     return text + "endsolid a name, facet\n";
 }
 
-const std::vector<Corners> quad{{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0.5}}}, {{{1, 1, 0.5}, {0, 1, -3}, {0, 0, 0}}}};
+const std::vector<Corners> pair{{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0.5}}}, {{{1, 1, 0.5}, {0, 1, -3}, {0, 0, 0}}}};
 
 const std::string vertices = "vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 ";
 const std::string facet = "facet normal 0 0 1 outer loop " + vertices + "endloop endfacet ";
@@ -54,7 +54,7 @@ const std::string facet = "facet normal 0 0 1 outer loop " + vertices + "endloop
 }  // namespace
 
 TEST_CASE("an STL file is read as text and as binary, whatever a binary one begins with") {
-    for (const std::string& bytes : {ascii(quad), binary("", quad), binary("solid facet", quad)}) {
+    for (const std::string& bytes : {ascii(pair), binary("", pair), binary("solid facet", pair)}) {
         const Mesh mesh = parse(bytes);
         CHECK(mesh.positions == std::vector<DVec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0.5}, {0, 1, -3}});
         CHECK(mesh.triangles == std::vector<Triangle>{{0, 1, 2}, {2, 3, 0}});
@@ -96,7 +96,7 @@ TEST_CASE("text in an STL file may be written in capitals, with any white space,
 
 TEST_CASE("facets of an STL file without area are dropped with a notice") {
     const std::vector<Corners> facets{
-        quad[0], {{{0, 0, 0}, {0, 0, 0}, {1, 0, 0}}}, quad[1], {{{0, 0, 0}, {7, 7, 7}, {2, 2, 2}}}};
+        pair[0], {{{0, 0, 0}, {0, 0, 0}, {1, 0, 0}}}, pair[1], {{{0, 0, 0}, {7, 7, 7}, {2, 2, 2}}}};
     for (const bool is_binary : {false, true}) {
         Notices notices;
         const Mesh mesh = parse(is_binary ? binary("", facets) : ascii(facets), &notices);
@@ -111,7 +111,7 @@ TEST_CASE("facets of an STL file without area are dropped with a notice") {
 }
 
 TEST_CASE("malformed STL files are refused with the line or the facet") {
-    const std::string good = binary("solid", quad);
+    const std::string good = binary("solid", pair);
     // Cut anywhere, a file is refused: no byte is optional.
     for (std::size_t size = 0; size < good.size(); ++size)
         CHECK(message_of([&] { parse(good.substr(0, size)); }) != "no error");
@@ -119,7 +119,7 @@ TEST_CASE("malformed STL files are refused with the line or the facet") {
     std::string infinite = good;
     infinite.replace(84 + 50 + 12 + 4 * 8, 4, std::string("\0\0\x80\x7f", 4));
     CHECK(contains(message_of([&] { parse(infinite); }), "mesh.stl: facet 1: a number is not finite"));
-    std::string many = binary("", quad);
+    std::string many = binary("", pair);
     many.replace(80, 4, "\xff\xff\xff\xff");
     CHECK(contains(message_of([&] { parse(many); }), "4294967295 facets has 214748364834 bytes, not 184"));
 
@@ -154,7 +154,7 @@ TEST_CASE("malformed STL files are refused with the line or the facet") {
 }
 
 TEST_CASE("changed STL files load or are refused") {
-    for (const std::string& file : {ascii(quad), binary("solid", quad)}) {
+    for (const std::string& file : {ascii(pair), binary("solid", pair)}) {
         int loaded = 0;
         for (std::uint32_t seed = 0; seed < 700; ++seed) {
             try {

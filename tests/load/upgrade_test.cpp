@@ -1,6 +1,8 @@
 #include "load/files.hpp"
 
-#include <lightswitch/load/mitsuba.hpp>
+#include <lightswitch/load/metals.hpp>
+#include <lightswitch/load/mitsuba_upgrade.hpp>
+#include <lightswitch/load/scene_file.hpp>
 
 using namespace lightswitch;
 using namespace lightswitch::test;
@@ -18,7 +20,7 @@ LibraryDescription load_version(const std::string& version, const std::string& t
 /// A scene of version 0.6.0.
 LibraryDescription old(const std::string& text) { return load_version("0.6.0", text); }
 
-LibraryBsdf old_bsdf(const std::string& text) {
+AnyMaterial old_bsdf(const std::string& text) {
     const auto result = old("<shape type=\"rectangle\">" + text + "</shape>");
     return result.materials.at(result.shapes.at(0).material).bsdf;
 }
@@ -94,34 +96,39 @@ TEST_CASE("a scene of version 0.6 is read in the words of 3") {
 }
 
 TEST_CASE("surface models of version 0.6") {
-    CHECK(std::get<Lambert>(old_bsdf("<bsdf type=\"lambertian\"><srgb name=\"diffuseReflectance\" "
-                                     "value=\"#ffffff\"/></bsdf>"))
+    CHECK(old_bsdf("<bsdf type=\"lambertian\"><srgb name=\"diffuseReflectance\" "
+                   "value=\"#ffffff\"/></bsdf>")
+              .as<Lambert>()
               .reflectance == Rgb(1));
-    CHECK(std::get<Dielectric>(old_bsdf("<bsdf type=\"dielectric\"><float name=\"intIOR\" value=\"2\"/><float "
-                                        "name=\"extIOR\" value=\"1\"/><string name=\"distribution\" "
-                                        "value=\"ggx\"/></bsdf>"))
+    CHECK(old_bsdf("<bsdf type=\"dielectric\"><float name=\"intIOR\" value=\"2\"/><float "
+                   "name=\"extIOR\" value=\"1\"/><string name=\"distribution\" "
+                   "value=\"ggx\"/></bsdf>")
+              .as<Dielectric>()
               .eta == 2);
-    const auto rough =
-        std::get<RoughDielectric>(old_bsdf("<bsdf type=\"roughglass\"><float name=\"alphaU\" value=\"0.2\"/><float "
-                                           "name=\"alphaV\" value=\"0.3\"/></bsdf>"));
+    const auto rough = old_bsdf(
+                           "<bsdf type=\"roughglass\"><float name=\"alphaU\" value=\"0.2\"/><float "
+                           "name=\"alphaV\" value=\"0.3\"/></bsdf>")
+                           .as<RoughDielectric>();
     CHECK(rough.alpha_u == 0.2f);
     CHECK(rough.alpha_v == 0.3f);
     // A metal is copper unless it has a name; "none" is a mirror.
-    CHECK(std::get<Conductor>(old_bsdf("<bsdf type=\"conductor\"/>")).eta == metal_by_name("Cu")->eta);
-    CHECK(
-        std::get<Conductor>(old_bsdf("<bsdf type=\"conductor\"><string name=\"material\" value=\"none\"/></bsdf>")).k ==
-        Rgb(1));
-    CHECK(std::get<Conductor>(old_bsdf("<bsdf type=\"mirror\"/>")).eta == Rgb(0));
-    CHECK(std::get<RoughConductor>(old_bsdf("<bsdf type=\"roughmetal\"/>")).eta == metal_by_name("Cu")->eta);
-    const auto in_water = std::get<Conductor>(
-        old_bsdf("<bsdf type=\"conductor\"><rgb name=\"eta\" value=\"2\"/><rgb name=\"k\" value=\"4\"/><float "
-                 "name=\"extEta\" value=\"2\"/></bsdf>"));
+    CHECK(old_bsdf("<bsdf type=\"conductor\"/>").as<Conductor>().eta == metal_by_name("Cu")->eta);
+    CHECK(old_bsdf("<bsdf type=\"conductor\"><string name=\"material\" value=\"none\"/></bsdf>").as<Conductor>().k ==
+          Rgb(1));
+    CHECK(old_bsdf("<bsdf type=\"mirror\"/>").as<Conductor>().eta == Rgb(0));
+    CHECK(old_bsdf("<bsdf type=\"roughmetal\"/>").as<RoughConductor>().eta == metal_by_name("Cu")->eta);
+    const auto in_water =
+        old_bsdf(
+            "<bsdf type=\"conductor\"><rgb name=\"eta\" value=\"2\"/><rgb name=\"k\" value=\"4\"/><float "
+            "name=\"extEta\" value=\"2\"/></bsdf>")
+            .as<Conductor>();
     CHECK(in_water.eta == Rgb(1));
     CHECK(in_water.k == Rgb(2));
     // What reflects more than all light is darkened as a whole.
-    const auto phong =
-        std::get<ModifiedPhong>(old_bsdf("<bsdf type=\"phong\"><rgb name=\"diffuseReflectance\" value=\"1.0\"/><rgb "
-                                         "name=\"specularReflectance\" value=\"0.5\"/></bsdf>"));
+    const auto phong = old_bsdf(
+                           "<bsdf type=\"phong\"><rgb name=\"diffuseReflectance\" value=\"1.0\"/><rgb "
+                           "name=\"specularReflectance\" value=\"0.5\"/></bsdf>")
+                           .as<ModifiedPhong>();
     CHECK(std::abs(phong.diffuse_reflectance.x - 0.66f) < 1e-6f);
     CHECK(std::abs(phong.specular_reflectance.x - 0.33f) < 1e-6f);
 }
@@ -132,11 +139,11 @@ TEST_CASE("a mixture is a chain of blends") {
             "<bsdf type=\"diffuse\"/><bsdf type=\"conductor\"/><bsdf type=\"dielectric\"/></bsdf></shape>");
     const auto& outer = std::get<Blend>(*result.materials[result.shapes[0].material].layer);
     CHECK(outer.weight.most() == Rgb(0.5f));
-    CHECK(std::holds_alternative<Dielectric>(result.materials[outer.second].bsdf));
+    CHECK(result.materials[outer.second].bsdf.get<Dielectric>());
     const auto& inner = std::get<Blend>(*result.materials[outer.first].layer);
     CHECK(std::abs(inner.weight.most().x - 0.6f) < 1e-6f);
-    CHECK(std::holds_alternative<Lambert>(result.materials[inner.first].bsdf));
-    CHECK(std::holds_alternative<Conductor>(result.materials[inner.second].bsdf));
+    CHECK(result.materials[inner.first].bsdf.get<Lambert>());
+    CHECK(result.materials[inner.second].bsdf.get<Conductor>());
 }
 
 TEST_CASE("textures of version 0.6") {

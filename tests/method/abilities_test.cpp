@@ -1,6 +1,8 @@
 // What the methods say that they cannot make (`PathClasses`): a scene for each class, and for what all can make; all
 // methods in each. And the tables of README and docs/methods.md say the same.
 
+#include "support/paths.hpp"
+
 #include <lightswitch/method/any_method.hpp>
 #include <lightswitch/render/render.hpp>
 #include <lightswitch/scene/stock.hpp>
@@ -126,7 +128,7 @@ TEST_CASE("abilities: a diffuse surface seen in a mirror") {
 }
 
 TEST_CASE("abilities: the table in the docs says what the methods say") {
-    std::ifstream file(LIGHTSWITCH_TESTS_DIR "/../docs/methods.md");
+    std::ifstream file(test::folder() + "/../docs/methods.md");
     const std::string text{std::istreambuf_iterator<char>(file), {}};
     REQUIRE(
         text.find("| method | caustic | caustic in a mirror | point light | sky | rough metal | seen in a mirror |") !=

@@ -43,7 +43,7 @@ Mesh square_at(double z, double half_side = 4) {
 }
 
 /// It sees 4 x 4 of the plane z = 0: column x, row y looks at (x / 4 - 2, 2 - y / 4).
-LibraryDescription describe_plane(const LibraryBsdf& bsdf = Lambert{Rgb(0.5f)}) {
+LibraryDescription describe_plane(const AnyMaterial& bsdf = Lambert{Rgb(0.5f)}) {
     LibraryDescription scene = looking_down();
     scene.add(square_at(0), scene.add(bsdf));
     return scene;

@@ -21,7 +21,7 @@ FullScene build(const LibraryDescription& description) { return build_scene<AllB
 
 /// A grey plane z = 0 under a camera at height 10 that sees 4 x 4 of it on 16 x 16 pixels: column x, row y looks at
 /// ((x + 0.5) / 4 - 2, 2 - (y + 0.5) / 4).
-LibraryDescription describe_plane(const LibraryBsdf& bsdf = Lambert{Rgb(0.5f)}) {
+LibraryDescription describe_plane(const AnyMaterial& bsdf = Lambert{Rgb(0.5f)}) {
     LibraryDescription scene;
     scene.add(quad({-4, -4, 0}, {4, -4, 0}, {4, 4, 0}, {-4, 4, 0}), scene.add(bsdf));
     scene.camera.to_world = CameraDescription::look_at({0, 0, 10}, {0, 0, 0}, {0, 1, 0});

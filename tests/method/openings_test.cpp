@@ -1,12 +1,13 @@
 // Textures, environment maps, spots and cameras against Mitsuba 3.9.1: tests/data/openings.
 
 #include "method/reference.hpp"
+#include "support/paths.hpp"
 
 #include <lightswitch/method/bdpt.hpp>
 #include <lightswitch/method/light_tracer.hpp>
 #include <lightswitch/method/vcm.hpp>
 #if __has_include(<pugixml.hpp>)
-#include <lightswitch/load/mitsuba.hpp>
+#include <lightswitch/load/scene_file.hpp>
 
 using namespace lightswitch;
 using namespace lightswitch::test;
@@ -14,7 +15,7 @@ using namespace lightswitch::test;
 namespace {
 
 LibraryDescription load(const std::string& name) {
-    return load_mitsuba(LIGHTSWITCH_TESTS_DIR "/data/openings/" + name + ".xml");
+    return load_mitsuba(test::folder() + "/data/openings/" + name + ".xml");
 }
 
 constexpr int mitsuba_samples = 8192;

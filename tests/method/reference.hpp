@@ -1,5 +1,6 @@
 #pragma once
 
+#include "support/paths.hpp"
 #include "support/renders.hpp"
 
 #include <lightswitch/method/path_tracer.hpp>
@@ -19,7 +20,7 @@ struct Reference {
 
 template <class SceneType>
 Reference<SceneType> reference(SceneType scene, int samples, const std::string& folder = "reference") {
-    TileEstimates tiles = load_tiles(LIGHTSWITCH_TESTS_DIR "/data/" + folder + "/" + scene.name() + ".txt");
+    TileEstimates tiles = load_tiles(test::folder() + "/data/" + folder + "/" + scene.name() + ".txt");
     return {std::move(scene), std::move(tiles), samples};
 }
 inline auto cornell_box() { return reference(stock::cornell_box(), 3072); }

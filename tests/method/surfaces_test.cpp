@@ -2,6 +2,7 @@
 // each other on random scenes of them.
 
 #include "method/reference.hpp"
+#include "support/paths.hpp"
 #include "support/random_surfaces.hpp"
 
 #include <lightswitch/method/bdpt.hpp>
@@ -13,7 +14,7 @@ using namespace lightswitch;
 using namespace lightswitch::test;
 
 #if __has_include(<pugixml.hpp>)
-#include <lightswitch/load/mitsuba.hpp>
+#include <lightswitch/load/scene_file.hpp>
 
 // False alarm: 1e-3 for the tiles of each comparison. Where Mitsuba is not exact (its fits of Beckmann's masking and of
 // what plastic reflects inside, up to 0.4 % of a tile), the tiles are compared at the noise of fewer samples.
@@ -24,7 +25,7 @@ constexpr int mitsuba_samples = 8192;
 
 auto surfaces(const std::string& name) {
     return reference(
-        build_scene<TexturedBsdfs, AllLights>(load_mitsuba(LIGHTSWITCH_TESTS_DIR "/data/surfaces/" + name + ".xml")),
+        build_scene<TexturedBsdfs, AllLights>(load_mitsuba(test::folder() + "/data/surfaces/" + name + ".xml")),
         mitsuba_samples, "surfaces");
 }
 
@@ -72,8 +73,8 @@ TEST_CASE("surfaces: methods agree on random ones, for every path length") {
     }
 }
 
-// Photons are left, and gathered, where layers are by chance. Two floors that fill the image, so that nothing is blurred
-// but by the corners that are out of view; bounds of 1 %. False alarm: 1e-3 in all.
+// Photons are left, and gathered, where layers are by chance. Two floors that fill the image, so that nothing is
+// blurred but by the corners that are out of view; bounds of 1 %. False alarm: 1e-3 in all.
 TEST_CASE("surfaces: photons see layers that decide by chance, and coats, as paths do") {
     const auto make = [](const auto& material) {
         LibraryDescription scene;

@@ -2,6 +2,8 @@
 
 // Running the program `lightswitch` as its users do: as a process of its own, in an empty directory.
 
+#include "support/paths.hpp"
+
 #include <doctest/doctest.h>
 
 #include <csignal>
@@ -77,7 +79,7 @@ public:
     /// in the new process, and tells whether it may go on; where it may not, the status is 127.
     Process(const Workspace& workspace, std::vector<std::string> arguments, const char* standard_output = nullptr,
             const std::function<bool()>& prepare = {}) {
-        std::string program = LIGHTSWITCH_PROGRAM;
+        std::string program = test::program();
         std::vector<char*> words{program.data()};
         for (std::string& argument : arguments) words.push_back(argument.data());
         words.push_back(nullptr);

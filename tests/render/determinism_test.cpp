@@ -75,7 +75,7 @@ TEST_CASE("Phong is the same for any threads, and when continued") {
 TEST_CASE("splats are the same for any threads, and when continued") {
     const LibraryDescription box = small_box();
     const DiffuseScene scene = build_scene<DiffuseBsdfs, Lights<TriangleLight>>(box);
-    test::LightTracer method = light_tracer_for(box, scene);
+    test::PlainLightTracer method = light_tracer_for(box, scene);
     method.bounces = 3;
     method.paths = 10000;  // several work units, the last one not full
     check_determinism(scene, method);

@@ -15,7 +15,7 @@ TEST_CASE("a light tracer agrees with path tracing") {
     const LibraryDescription box = small_box(48, 32);
     const DiffuseScene scene = build_scene<DiffuseBsdfs, Lights<TriangleLight>>(box);
     for (int bounces = 1; bounces <= 3; ++bounces) {
-        LightTracer method = light_tracer_for(box, scene);
+        PlainLightTracer method = light_tracer_for(box, scene);
         method.bounces = bounces;
         method.paths = 20000;
         const auto light = replicate(scene, method, 8, 16, 8);
@@ -28,9 +28,9 @@ TEST_CASE("a light tracer agrees with path tracing") {
 TEST_CASE("light paths are counted") {
     const LibraryDescription box = small_box();
     const DiffuseScene scene = build_scene<DiffuseBsdfs, Lights<TriangleLight>>(box);
-    LightTracer method = light_tracer_for(box, scene);
+    PlainLightTracer method = light_tracer_for(box, scene);
     method.paths = 3000;
-    Session<DiffuseScene, LightTracer> session(scene, method);
+    Session<DiffuseScene, PlainLightTracer> session(scene, method);
     session.run({.samples = 2});
     const RenderCounts& counts = session.statistics().counts;
     CHECK(counts.paths == 6000);

@@ -6,7 +6,7 @@ using namespace lightswitch;
 
 namespace {
 
-LibraryDescription with(const LibraryBsdf& bsdf) {
+LibraryDescription with(const AnyMaterial& bsdf) {
     LibraryDescription scene;
     scene.film.width = scene.film.height = 8;
     scene.add(rectangle(), scene.add(bsdf));
@@ -27,7 +27,7 @@ TEST_CASE("any scene: the smallest type that holds everything") {
     LibraryDescription both = with(Lambert{});
     both.materials[0].two_sided = true;
     CHECK(becomes<DiffuseScene>(both));
-    for (const LibraryBsdf& bsdf : {LibraryBsdf(Conductor{}), LibraryBsdf(RoughConductor{}), LibraryBsdf(Dielectric{})})
+    for (const AnyMaterial& bsdf : {AnyMaterial(Conductor{}), AnyMaterial(RoughConductor{}), AnyMaterial(Dielectric{})})
         CHECK(becomes<FullScene>(with(bsdf)));
 
     LibraryDescription scene = with(Lambert{});

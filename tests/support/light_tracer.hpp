@@ -49,7 +49,7 @@ private:
 /// Emission seen directly (slots), and light paths of `bounces` surface points, each connected to the camera (splats):
 /// what a path tracer sees up to depth `bounces` + 1. For scenes of one-sided diffuse surfaces and luminous triangles,
 /// with a box filter.
-struct LightTracer {
+struct PlainLightTracer {
     static constexpr std::string_view name = "light-tracer";
     static constexpr Kind kind = Kind::unbiased;
 
@@ -120,7 +120,7 @@ inline LibraryDescription small_box(int width = 48, int height = 32) {
     return scene;
 }
 
-inline LightTracer light_tracer_for(const LibraryDescription& description, const DiffuseScene& scene) {
+inline PlainLightTracer light_tracer_for(const LibraryDescription& description, const DiffuseScene& scene) {
     return {.camera = Pinhole(description.camera, description.film, scene.space())};
 }
 

@@ -59,7 +59,7 @@ SceneDescription<M> floor_with(const M& material) {
 }
 
 LibraryDescription checkered(const Checkerboard& pattern) {
-    return floor_with<LibraryBsdf>(Textured<Lambert>().set("reflectance", Texture(pattern, {{3, 0, 0}, {0, 2, 0.1f}})));
+    return floor_with<AnyMaterial>(Textured<Lambert>().set("reflectance", Texture(pattern, {{3, 0, 0}, {0, 2, 0.1f}})));
 }
 
 }  // namespace
@@ -105,7 +105,7 @@ TEST_CASE("a scene without materials that differ from place to place has the poi
 
 TEST_CASE("a texture of one colour is that colour, to the bit, for all methods") {
     const Rgb color(0.25f, 0.5f, 0.75f);
-    const auto plain = build_scene<AllBsdfs, AllLights>(floor_with<LibraryBsdf>(Lambert{color}));
+    const auto plain = build_scene<AllBsdfs, AllLights>(floor_with<AnyMaterial>(Lambert{color}));
     const auto textured = build_scene<TexturedBsdfs, AllLights>(checkered({color, color}));
     const auto check = [&](const auto& method) {
         CHECK(render(plain, method, {.samples = 4}).pixels() == render(textured, method, {.samples = 4}).pixels());
@@ -139,9 +139,9 @@ TEST_CASE("textured materials: a name that stands for two parameters gives both"
 }
 
 TEST_CASE("textured materials: what is impossible is said by the model") {
-    const auto refusal = [](const LibraryBsdf& material) -> std::string {
+    const auto refusal = [](const AnyMaterial& material) -> std::string {
         try {
-            build_any(floor_with<LibraryBsdf>(material));
+            build_any(floor_with<AnyMaterial>(material));
         } catch (const Error& error) {
             return error.what();
         }
@@ -152,7 +152,7 @@ TEST_CASE("textured materials: what is impossible is said by the model") {
     CHECK(refusal(Textured<RoughConductor>().set("alpha", Texture(Checkerboard{Rgb(0.5f), Rgb(-0.5f)}))) != "");
     CHECK(refusal(Textured<Lambert>().set("reflectance", Texture(Checkerboard{Rgb(0.5f), Rgb(0.25f)}))) == "");
     CHECK_THROWS_AS(Textured<Lambert>().set("alpha", Texture(Checkerboard{})), Error);
-    LibraryDescription bad = floor_with<LibraryBsdf>(Lambert{});
+    LibraryDescription bad = floor_with<AnyMaterial>(Lambert{});
     std::get<Mesh>(bad.shapes[0].geometry).uvs.resize(5);
     CHECK_THROWS_WITH_AS(build_any(bad), doctest::Contains("4 vertices but 5 texture coordinates"), Error);
 }

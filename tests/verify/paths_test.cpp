@@ -17,7 +17,7 @@ namespace {
 
 /// A grey floor under a point lamp off the middle.
 LibraryDescription lamp_above_floor(double height) {
-    auto scene = test::empty_view<LibraryBsdf>("lamp-above-floor", {0, 2, 0.01}, {0, 0, 0}, 45);
+    auto scene = test::empty_view<AnyMaterial>("lamp-above-floor", {0, 2, 0.01}, {0, 0, 0}, 45);
     scene.add(test::level({0, 0, 0}, 0.8, 0.8), scene.add(Lambert{Rgb(0.5f)}));
     scene.add(PointSource{{0.013, height, 0.007}, Rgb(1)});
     return scene;

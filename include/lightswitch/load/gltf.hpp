@@ -7,6 +7,7 @@
 #include <lightswitch/load/gltf_mesh.hpp>
 #include <lightswitch/load/gltf_view.hpp>
 #include <lightswitch/load/mesh_file.hpp>
+#include <lightswitch/load/scene_file.hpp>
 #include <lightswitch/scene/framing.hpp>
 #include <lightswitch/scene/library.hpp>
 
@@ -15,16 +16,6 @@
 #include <iterator>
 
 namespace lightswitch {
-
-/// Reads the scene of a glTF 2.0 file, `.gltf` or `.glb`: that which the file names, or its first; with the files that
-/// it names beside it. What of the format means what, docs/scene-files.md says.
-///
-/// A mesh that several nodes use becomes a group with instances. Where the file has no camera, one that sees all is
-/// added, and where nothing shines a sky; `notices` tells, and what is ignored.
-///
-/// Throws `Error` with file and element (such as "accessors[3]") for anything malformed, for extensions that are
-/// required and not known, and when there are no triangles. Memory is in proportion to the files. Thread safe.
-LibraryDescription load_gltf(const std::filesystem::path& file, Notices* notices = nullptr);
 
 #if LIGHTSWITCH_HAS_GLTF
 
@@ -224,7 +215,8 @@ private:
 
 #endif
 
-inline LibraryDescription load_gltf(const std::filesystem::path& file, [[maybe_unused]] Notices* notices) {
+template <class Description>
+Description load_gltf(const std::filesystem::path& file, [[maybe_unused]] Notices* notices) {
 #if LIGHTSWITCH_HAS_GLTF
     return detail::GltfReader(file).read(notices);
 #else

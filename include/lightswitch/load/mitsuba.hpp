@@ -5,31 +5,10 @@
 #include <lightswitch/load/mitsuba_camera.hpp>
 #include <lightswitch/load/mitsuba_emitter.hpp>
 #include <lightswitch/load/mitsuba_shape.hpp>
+#include <lightswitch/load/scene_file.hpp>
 #include <lightswitch/scene/framing.hpp>
 
 namespace lightswitch {
-
-/// How a scene file is read.
-struct MitsubaOptions {
-    std::map<std::string, std::string> defines{};  ///< values of `$name`, before any `<default>`
-    Strictness strictness = Strictness::strict;
-    std::vector<std::filesystem::path> search_paths{};  ///< where files are that are not beside the scene file
-    std::string sensor{};          ///< the id of a `<sensor>`, or its number from 0; empty: the first one
-    Notices* notices = nullptr;    ///< gets what was skipped, guessed or upgraded without another image in mind
-    Problems* problems = nullptr;  ///< gets what the file asks for and does not get
-};
-
-/// Reads a scene file of Mitsuba 3, 2 or 0.x, as the RGB variants of Mitsuba 3 see it; `docs/scene-files.md` lists what
-/// is supported. What a file leaves out has Mitsuba's default, but for the clipping planes, which are then at 0 and
-/// infinity.
-///
-/// Throws `UnsupportedScene`, an `Error` whose message is the first problem, with file, line and element, when there is
-/// anything that cannot be honoured. A lenient reading goes on with the nearest known thing or none, and throws `Error`
-/// only for what is no scene at all: no such file, malformed XML, a sensor that is not there. Thread safe.
-LibraryDescription load_mitsuba(const std::filesystem::path& file, const MitsubaOptions& options);
-/// The same, strictly.
-LibraryDescription load_mitsuba(const std::filesystem::path& file,
-                                const std::map<std::string, std::string>& defines = {}, Notices* notices = nullptr);
 
 namespace detail {
 
@@ -110,7 +89,8 @@ private:
 
 }  // namespace detail
 
-inline LibraryDescription load_mitsuba(const std::filesystem::path& file, const MitsubaOptions& options) {
+template <class Description>
+Description load_mitsuba(const std::filesystem::path& file, const MitsubaOptions& options) {
     detail::ReadingLog log;
     const auto tell = [&] {
         if (options.notices)
@@ -118,7 +98,7 @@ inline LibraryDescription load_mitsuba(const std::filesystem::path& file, const 
         if (options.problems)
             options.problems->insert(options.problems->end(), log.problems().begin(), log.problems().end());
     };
-    LibraryDescription scene;
+    Description scene;
     try {
         scene = detail::MitsubaReader(file, options, log).read();
     } catch (const Error&) {
@@ -130,9 +110,10 @@ inline LibraryDescription load_mitsuba(const std::filesystem::path& file, const 
     return scene;
 }
 
-inline LibraryDescription load_mitsuba(const std::filesystem::path& file,
-                                       const std::map<std::string, std::string>& defines, Notices* notices) {
-    return load_mitsuba(file, MitsubaOptions{.defines = defines, .notices = notices});
+template <class Description>
+Description load_mitsuba(const std::filesystem::path& file, const std::map<std::string, std::string>& defines,
+                         Notices* notices) {
+    return load_mitsuba<Description>(file, MitsubaOptions{.defines = defines, .notices = notices});
 }
 
 }  // namespace lightswitch

@@ -100,7 +100,7 @@ class BsdfReader {
 public:
     BsdfReader(XmlElement& element, TextureReader& textures) : element_(element), textures_(textures) {}
 
-    LibraryBsdf read() {
+    AnyMaterial read() {
         const std::string type = element_.type();
         // Exporters gave Mitsuba 0.6 these also where there is no roughness, and it passes over what it does not know.
         if (element_.is_old() && (type == "conductor" || type == "dielectric" || type == "thindielectric"))
@@ -134,21 +134,20 @@ public:
 
 private:
     template <class B>
-    LibraryBsdf finished(B model) {
+    AnyMaterial finished(B model) {
         read_parameters(element_, model);
         return with_textures(model);
     }
     template <class B>
-    LibraryBsdf with_textures(const B& model) {
-        LibraryBsdf result = textures_.with_textures(element_, model);
+    AnyMaterial with_textures(const B& model) {
+        AnyMaterial result = textures_.with_textures(element_, model);
         element_.finish();
-        const std::string problem = std::visit([](const auto& bsdf) { return bsdf.problem(); }, result);
-        if (!problem.empty()) element_.error(problem);
+        if (const std::string problem = result.problem(); !problem.empty()) element_.error(problem);
         return result;
     }
     /// What Mitsuba 0.6 darkens so that no more light leaves than comes.
     template <class B>
-    LibraryBsdf within_one(B model) {
+    AnyMaterial within_one(B model) {
         read_parameters(element_, model);
         const auto diffuse = element_.texture("diffuse_reflectance"), lobe = element_.texture("specular_reflectance");
         const Rgb most_diffuse = diffuse ? textures_.read(*diffuse).most() : model.diffuse_reflectance;
@@ -166,7 +165,7 @@ private:
         return with_textures(model);
     }
     template <class B>
-    LibraryBsdf metal(B model) {
+    AnyMaterial metal(B model) {
         read_metal_name(element_, model);
         read_parameters(element_, model);
         // Of Mitsuba 0.6: what is around the metal.
@@ -184,7 +183,7 @@ private:
         return with_textures(model);
     }
     template <class B>
-    LibraryBsdf glass(B model, const char* inside) {
+    AnyMaterial glass(B model, const char* inside) {
         model.eta = read_relative_index(element_, inside);
         return finished(model);
     }
@@ -199,13 +198,13 @@ private:
     }
     bool given(const std::string& name) const { return element_.has(name) || element_.has_object(name); }
 
-    LibraryBsdf plastic() {
+    AnyMaterial plastic() {
         Plastic model{.eta = read_relative_index(element_, "polypropylene")};
         model.nonlinear = element_.boolean("nonlinear", false);
         return finished(model);
     }
 
-    LibraryBsdf rough_plastic() {
+    AnyMaterial rough_plastic() {
         RoughPlastic facets;
         read_facets(element_, facets);
         const float alpha = clamped(element_, "alpha", as_roughness, static_cast<float>(element_.number("alpha", 0.1)));
@@ -216,7 +215,7 @@ private:
         return finished(model);
     }
 
-    LibraryBsdf principled() {
+    AnyMaterial principled() {
         ignore_rates({"main_specular_sampling_rate", "clearcoat_sampling_rate", "diffuse_reflectance_sampling_rate"});
         Principled model;
         const bool transmits = element_.has_object("spec_trans") || element_.number("spec_trans", 0) != 0;
@@ -229,7 +228,7 @@ private:
         return finished(model);
     }
 
-    LibraryBsdf ward() {
+    AnyMaterial ward() {
         static const std::map<std::string, WardVariant> variants{
             {"ward", WardVariant::ward}, {"ward-duer", WardVariant::ward_duer}, {"balanced", WardVariant::balanced}};
         return within_one(Ward{.variant = element_.one_of("variant", "balanced", variants)});

@@ -189,7 +189,7 @@ private:
     bool transmits_light(std::size_t number) const {
         return any_below(scene_, number, [](const auto& material) {
             if (material.layer) return std::holds_alternative<Mask>(*material.layer);
-            return std::visit([](const auto& bsdf) { return lightswitch::transmits_light(bsdf); }, material.bsdf);
+            return material.bsdf.transmits_light();
         });
     }
 

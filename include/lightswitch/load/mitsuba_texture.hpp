@@ -59,7 +59,7 @@ public:
 
     /// A surface model with those of its parameters that `element` gives as textures.
     template <class B>
-    LibraryBsdf with_textures(XmlElement& element, const B& bsdf) {
+    AnyMaterial with_textures(XmlElement& element, const B& bsdf) {
         Textured<B> textured(bsdf);
         bool any = false;
         for_each_parameter<B>([&](std::size_t, const auto& parameter) {

@@ -92,7 +92,7 @@ private:
         for (const auto& [parameter, texture] : textures)
             if (texture) textured.set(parameter, *texture);
         const bool is_plain = textured.constant() != nullptr;
-        const std::size_t number = scene_.add(is_plain ? LibraryBsdf(model) : LibraryBsdf(std::move(textured)), origin);
+        const std::size_t number = scene_.add(is_plain ? AnyMaterial(model) : AnyMaterial(std::move(textured)), origin);
         scene_.materials[number].two_sided = !transmits_light(model);
         return number;
     }

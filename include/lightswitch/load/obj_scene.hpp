@@ -5,24 +5,11 @@
 #include <lightswitch/load/obj.hpp>
 #include <lightswitch/load/obj_material.hpp>
 #include <lightswitch/load/ply.hpp>
+#include <lightswitch/load/scene_file.hpp>
 #include <lightswitch/load/stl.hpp>
 #include <lightswitch/scene/framing.hpp>
 
 namespace lightswitch {
-
-/// Reads a Wavefront OBJ file with its materials as a scene: a shape for each material in use, in the order in which
-/// the file names them. docs/scene-files.md says what becomes of the statements of material files. Where a name leads
-/// to no material, surfaces are grey. Surfaces are the same from both sides, but for glass and for light, which leaves
-/// the front only. A camera that sees everything is added, and a soft sky when nothing shines, and `notices` tells.
-///
-/// Throws `Error` with file and line as `load_obj` does, and for malformed numbers in material files; missing and
-/// damaged images and missing material files are only noticed. Thread safe.
-LibraryDescription load_obj_scene(const std::filesystem::path& path, Notices* notices = nullptr);
-
-/// Reads a file of a mesh as a scene by the ending of its name: `load_obj_scene` for `.obj`; from `.ply` and `.stl` a
-/// grey object, the same from both sides, with a camera that sees all of it under a soft sky. Throws `Error` for other
-/// names and what the readers of the mesh refuse. Thread safe.
-LibraryDescription load_mesh_scene(const std::filesystem::path& path, Notices* notices = nullptr);
 
 namespace detail {
 
@@ -176,16 +163,18 @@ private:
 
 }  // namespace detail
 
-inline LibraryDescription load_obj_scene(const std::filesystem::path& path, Notices* notices) {
+template <class Description>
+Description load_obj_scene(const std::filesystem::path& path, Notices* notices) {
     return detail::ObjSceneReader(path, notices).read();
 }
 
-inline LibraryDescription load_mesh_scene(const std::filesystem::path& path, Notices* notices) {
+template <class Description>
+Description load_mesh_scene(const std::filesystem::path& path, Notices* notices) {
     const std::string ending = detail::lower_case(path.extension().string());
     const Origin origin = detail::file_origin(path);
-    if (ending == ".obj") return load_obj_scene(path, notices);
+    if (ending == ".obj") return load_obj_scene<Description>(path, notices);
     if (ending != ".ply" && ending != ".stl") fail(origin, "is not called .obj, .ply or .stl");
-    LibraryDescription scene;
+    Description scene;
     scene.name = path.stem().string();
     scene.files.push_back(path.string());
     const std::size_t grey = scene.add(TwoSided{Lambert{.reflectance = Rgb(0.5f)}});

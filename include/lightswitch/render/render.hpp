@@ -8,7 +8,7 @@
 
 #include <chrono>
 #include <functional>
-#include <optional>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -80,10 +80,33 @@ decltype(auto) as_image_method(const M& method) {
     }
 }
 
+/// What a method keeps from one iteration to the next.
+template <class SceneType, class M, Executor E>
+struct MethodState {
+    using FrameType = Frame<SceneType, E>;
+    using ImageMethod = decltype(as_image_method<FrameType, SceneType>(std::declval<const M&>()));
+
+    decltype(std::declval<ImageMethod>().start(std::declval<FrameType&>())) value;
+};
+
+/// Throws `Error` when a limit is not one.
+inline void check(const Budget& budget) {
+    const auto check_limit = [](double limit, const char* what) {
+        if (!(limit >= 0))
+            throw Error(std::string("the budget of ") + what + " is " + number_text(limit) + ": give 0 for no limit");
+    };
+    check_limit(budget.samples, "samples");
+    check_limit(budget.seconds, "seconds");
+    check_limit(budget.error, "error");
+}
+
 }  // namespace detail
 
 /// A render that can be continued: what it has accumulated is a pure function of (scene, method, seed, sampling, number
 /// of iterations), whatever the threads and however often it was stopped in between. The scene must outlive it.
+///
+/// The members that lead to the code of a method are outside the class, so that `compiled.hpp` can leave them to another
+/// file.
 template <class SceneType, class M, Executor E = TbbExecutor>
 class Session {
     static_assert(detail::RequireScene<SceneType>::value);
@@ -92,17 +115,9 @@ public:
     Session(const SceneType& scene, const M& method,
             const Settings& settings = {}) requires std::same_as<E, TbbExecutor>
         : Session(scene, method, settings, TbbExecutor(settings.threads)) {}
-    Session(const SceneType& scene, const M& method, const Settings& settings, E executor)
-        : scene_(scene),
-          method_(method),
-          settings_(settings),
-          executor_(std::move(executor)),
-          film_(scene.camera().width(), scene.camera().height()) {
-        statistics_.threads = executor_.threads();
-        auto preparation = frame(FrameType::before_the_first);
-        state_.emplace(image_method().start(preparation));
-        film_.discard(executor_);
-    }
+    Session(const SceneType& scene, const M& method, const Settings& settings, E executor);
+    Session(Session&&) noexcept;
+    ~Session();
 
     /// The scene would be gone before the session is used.
     Session(const SceneType&& scene, const M& method, const Settings& settings = {}) = delete;
@@ -111,103 +126,31 @@ public:
     /// Makes iterations until the budget is spent or the stop token asks for an end. Seconds count from this call;
     /// samples and error concern everything accumulated so far. What a method or an observer throws comes out of here;
     /// the whole iterations before it are kept. Throws `Error` when a limit is not one.
-    void run(Budget budget) {
-        using Clock = std::chrono::steady_clock;
-        check(budget);
-        if (budget.samples == 0 && budget.seconds == 0 && budget.error == 0) budget.samples = 64;
-        const auto begin = Clock::now();
-        const std::uint64_t already = film_.iterations();
-        double fraction = 0;
-        while (!settings_.stop.stop_requested() && !(budget.samples > 0 && film_.iterations() >= wanted(budget))) {
-            auto current = frame(film_.iterations());
-            try {
-                image_method().iterate(current, *state_);
-            } catch (...) {
-                film_.discard(executor_);
-                throw;
-            }
-            if (settings_.stop.stop_requested()) {
-                film_.discard(executor_);
-                break;
-            }
-            film_.commit(executor_);
-            statistics_.iterations = film_.iterations();
-            const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
-            fraction = std::max(fraction, spent(budget, seconds, already));  // an estimated error may also grow
-            if (settings_.observer) {
-                settings_.observer({.iterations = film_.iterations(),
-                                    .seconds = seconds,
-                                    .fraction = fraction,
-                                    .seconds_left = fraction > 0 ? seconds * (1 / fraction - 1) : 0,
-                                    .film = film_});
-            }
-            if (fraction >= 1) break;
-        }
-        statistics_.cancelled = settings_.stop.stop_requested();
-        statistics_.seconds += std::chrono::duration<double>(Clock::now() - begin).count();
-        if constexpr (requires { state_->statistics(); }) statistics_.of_method = state_->statistics();
-    }
+    void run(Budget budget);
 
     const Film& film() const { return film_; }
     const RenderStatistics& statistics() const { return statistics_; }
     /// The image so far, with metadata that says how it was made.
-    Image image() const {
-        Image result = film_.image();
-        result.metadata = {{"method", std::string(M::name)},
-                           {"kind", std::string(name(M::kind))},
-                           {"scene", scene_.name()},
-                           {"camera", scene_.camera_id()},
-                           {"samples", std::to_string(film_.iterations())},
-                           {"seconds", std::to_string(statistics_.seconds)},
-                           {"seed", std::to_string(settings_.seed)},
-                           {"sampling", std::string(lightswitch::name(settings_.sampling))}};
-        if (statistics_.counts.non_finite > 0)
-            result.metadata["non_finite"] = std::to_string(statistics_.counts.non_finite);
-        return result;
-    }
+    Image image() const;
 
 private:
-    using FrameType = Frame<SceneType, E>;
+    using State = detail::MethodState<SceneType, M, E>;
 
-    decltype(auto) image_method() const { return detail::as_image_method<FrameType, SceneType>(method_); }
+    decltype(auto) image_method() const { return detail::as_image_method<Frame<SceneType, E>, SceneType>(method_); }
 
-    FrameType frame(std::uint64_t iteration) {
-        return FrameType({.scene = scene_,
-                          .film = film_,
-                          .executor = executor_,
-                          .sampling = settings_.sampling,
-                          .seed = settings_.seed,
-                          .iteration = iteration,
-                          .stop = settings_.stop,
-                          .counts = statistics_.counts});
-    }
-
-    static void check(const Budget& budget) {
-        const auto check_limit = [](double limit, const char* what) {
-            if (!(limit >= 0))
-                throw Error(std::string("the budget of ") + what + " is " + number_text(limit) +
-                            ": give 0 for no limit");
-        };
-        check_limit(budget.samples, "samples");
-        check_limit(budget.seconds, "seconds");
-        check_limit(budget.error, "error");
+    Frame<SceneType, E> frame(std::uint64_t iteration) {
+        return Frame<SceneType, E>({.scene = scene_,
+                                    .film = film_,
+                                    .executor = executor_,
+                                    .sampling = settings_.sampling,
+                                    .seed = settings_.seed,
+                                    .iteration = iteration,
+                                    .stop = settings_.stop,
+                                    .counts = statistics_.counts});
     }
 
     static std::uint64_t wanted(const Budget& budget) { return static_cast<std::uint64_t>(budget.samples); }
-
-    /// Fraction of the budget that is spent, by the limit that will be met first.
-    double spent(const Budget& budget, double seconds, std::uint64_t already) const {
-        double fraction = 0;
-        const double made = double(film_.iterations() - already);
-        if (budget.samples > 0) fraction = std::max(fraction, made / double(wanted(budget) - already));
-        if (budget.seconds > 0) fraction = std::max(fraction, seconds / budget.seconds);
-        if (budget.error > 0 && film_.iterations() >= 16) {
-            // The variance falls as one over the number of iterations.
-            const double ratio = budget.error / film_.relative_error();
-            fraction = std::max(fraction, ratio >= 1 ? 1.0 : ratio * ratio);
-        }
-        return std::min(fraction, 1.0);
-    }
+    double spent(const Budget& budget, double seconds, std::uint64_t already) const;
 
     const SceneType& scene_;
     M method_;
@@ -215,11 +158,96 @@ private:
     E executor_;
     Film film_;
     RenderStatistics statistics_;
-    using State =
-        decltype(std::declval<decltype(detail::as_image_method<FrameType, SceneType>(std::declval<const M&>()))>()
-                     .start(std::declval<FrameType&>()));
-    std::optional<State> state_;
+    std::unique_ptr<State> state_;
 };
+
+template <class SceneType, class M, Executor E>
+Session<SceneType, M, E>::Session(const SceneType& scene, const M& method, const Settings& settings, E executor)
+    : scene_(scene),
+      method_(method),
+      settings_(settings),
+      executor_(std::move(executor)),
+      film_(scene.camera().width(), scene.camera().height()) {
+    statistics_.threads = executor_.threads();
+    auto preparation = frame(Frame<SceneType, E>::before_the_first);
+    state_.reset(new State{image_method().start(preparation)});
+    film_.discard(executor_);
+}
+
+template <class SceneType, class M, Executor E>
+Session<SceneType, M, E>::Session(Session&&) noexcept = default;
+
+template <class SceneType, class M, Executor E>
+Session<SceneType, M, E>::~Session() = default;
+
+template <class SceneType, class M, Executor E>
+void Session<SceneType, M, E>::run(Budget budget) {
+    using Clock = std::chrono::steady_clock;
+    detail::check(budget);
+    if (budget.samples == 0 && budget.seconds == 0 && budget.error == 0) budget.samples = 64;
+    const auto begin = Clock::now();
+    const std::uint64_t already = film_.iterations();
+    double fraction = 0;
+    while (!settings_.stop.stop_requested() && !(budget.samples > 0 && film_.iterations() >= wanted(budget))) {
+        auto current = frame(film_.iterations());
+        try {
+            image_method().iterate(current, state_->value);
+        } catch (...) {
+            film_.discard(executor_);
+            throw;
+        }
+        if (settings_.stop.stop_requested()) {
+            film_.discard(executor_);
+            break;
+        }
+        film_.commit(executor_);
+        statistics_.iterations = film_.iterations();
+        const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+        fraction = std::max(fraction, spent(budget, seconds, already));  // an estimated error may also grow
+        if (settings_.observer) {
+            settings_.observer({.iterations = film_.iterations(),
+                                .seconds = seconds,
+                                .fraction = fraction,
+                                .seconds_left = fraction > 0 ? seconds * (1 / fraction - 1) : 0,
+                                .film = film_});
+        }
+        if (fraction >= 1) break;
+    }
+    statistics_.cancelled = settings_.stop.stop_requested();
+    statistics_.seconds += std::chrono::duration<double>(Clock::now() - begin).count();
+    if constexpr (requires { state_->value.statistics(); }) statistics_.of_method = state_->value.statistics();
+}
+
+template <class SceneType, class M, Executor E>
+Image Session<SceneType, M, E>::image() const {
+    Image result = film_.image();
+    result.metadata = {{"method", std::string(M::name)},
+                       {"kind", std::string(name(M::kind))},
+                       {"scene", scene_.name()},
+                       {"camera", scene_.camera_id()},
+                       {"samples", std::to_string(film_.iterations())},
+                       {"seconds", std::to_string(statistics_.seconds)},
+                       {"seed", std::to_string(settings_.seed)},
+                       {"sampling", std::string(lightswitch::name(settings_.sampling))}};
+    if (statistics_.counts.non_finite > 0)
+        result.metadata["non_finite"] = std::to_string(statistics_.counts.non_finite);
+    return result;
+}
+
+/// Fraction of the budget that is spent, by the limit that will be met first.
+template <class SceneType, class M, Executor E>
+double Session<SceneType, M, E>::spent(const Budget& budget, double seconds, std::uint64_t already) const {
+    double fraction = 0;
+    const double made = double(film_.iterations() - already);
+    if (budget.samples > 0) fraction = std::max(fraction, made / double(wanted(budget) - already));
+    if (budget.seconds > 0) fraction = std::max(fraction, seconds / budget.seconds);
+    if (budget.error > 0 && film_.iterations() >= 16) {
+        // The variance falls as one over the number of iterations.
+        const double ratio = budget.error / film_.relative_error();
+        fraction = std::max(fraction, ratio >= 1 ? 1.0 : ratio * ratio);
+    }
+    return std::min(fraction, 1.0);
+}
 
 /// Renders `scene` with `method` until `budget` is spent, and returns the image. Deterministic: equal arguments give
 /// equal bits, for any number of threads, unless the budget is in seconds.

@@ -5,7 +5,10 @@
 #include <lightswitch/scene/build.hpp>
 #include <lightswitch/scene/library.hpp>
 
+#include <optional>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 #include <variant>
 
 namespace lightswitch {
@@ -43,8 +46,7 @@ public:
     /// Of scene types without placed materials.
     static bool holds(const LibraryDescription& scene) {
         for (const auto& material : scene.materials)
-            if (material.layer || !std::visit([](const auto& bsdf) { return holds_model(bsdf); }, material.bsdf))
-                return false;
+            if (material.layer || !material.bsdf.isotropic() || !(material.bsdf.template get<B>() || ...)) return false;
         for (const auto& placed : scene.sources)
             if (!((placed.source.light_type() == typeid(L)) || ...)) return false;
         if (!(C::serves(scene.camera) || ...)) return false;
@@ -60,24 +62,47 @@ public:
         return std::all_of(scene.shapes.begin(), scene.shapes.end(), holds_shape) &&
                std::all_of(scene.groups.begin(), scene.groups.end(), holds_group);
     }
+};
 
-private:
-    template <class Model>
-    static bool holds_model(const Model& model) {
-        if constexpr (!is_one_of<Model, B...>) return false;
-        else if constexpr (Bsdf<Model>) return is_isotropic(model);
-        else return true;
+}  // namespace detail
+
+namespace detail {
+
+template <class SceneType>
+struct BuildAs;
+
+template <class BsdfList, class LightList, class CameraList>
+struct BuildAs<Scene<BsdfList, LightList, CameraList>> {
+    static auto build(const auto& description, const BuildOptions& options) {
+        return build_scene<BsdfList, LightList, CameraList>(description, options);
     }
 };
 
 }  // namespace detail
 
-/// Builds the smallest of the alternatives of `AnyScene` that can hold the description. Throws like `build_scene`.
-inline AnyScene build_any(const LibraryDescription& description, const BuildOptions& options = {}) {
-    if (detail::Capacity<DiffuseScene>::holds(description))
-        return build_scene<DiffuseBsdfs, Lights<TriangleLight>>(description, options);
-    if (detail::Capacity<FullScene>::holds(description)) return build_scene<AllBsdfs, AllLights>(description, options);
-    return build_scene<TexturedBsdfs, AllLights>(description, options);
+/// `build_scene` by the name of the scene's type: `build_as<FullScene>(description)`.
+template <class SceneType, class Material>
+SceneType build_as(const SceneDescription<Material>& description, const BuildOptions& options = {}) {
+    return detail::BuildAs<SceneType>::build(description, options);
+}
+
+/// Builds the first of the alternatives, all of which are scenes, that can hold the description. Throws like
+/// `build_scene`.
+template <class Variant = AnyScene>
+Variant build_any(const LibraryDescription& description, const BuildOptions& options = {}) {
+    return [&]<std::size_t... I>(std::index_sequence<I...>) {
+        constexpr std::size_t last = sizeof...(I);
+        std::optional<Variant> scene;
+        const auto build = [&]<class SceneType>(std::type_identity<SceneType>, bool fits) {
+            if (!scene && fits) scene.emplace(build_as<SceneType>(description, options));
+        };
+        (build(std::type_identity<std::variant_alternative_t<I, Variant>>(),
+               detail::Capacity<std::variant_alternative_t<I, Variant>>::holds(description)),
+         ...);
+        build(std::type_identity<std::variant_alternative_t<last, Variant>>(), true);
+        return std::move(*scene);
+    }
+    (std::make_index_sequence<std::variant_size_v<Variant> - 1>());
 }
 
 }  // namespace lightswitch

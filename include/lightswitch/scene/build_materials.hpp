@@ -2,8 +2,12 @@
 
 // From the materials of a description to those of a scene: surface models by kind, and the layers over them.
 
+#include <lightswitch/bsdf/any_material.hpp>
 #include <lightswitch/scene/check.hpp>
 #include <lightswitch/scene/scene_data.hpp>
+
+#include <optional>
+#include <type_traits>
 
 namespace lightswitch::detail {
 
@@ -41,6 +45,8 @@ private:
         const auto add_one = [&](const auto& bsdf) { return add(bsdf, material.two_sided, material.origin); };
         if constexpr (requires { std::visit(add_one, material.bsdf); })
             indices_[number] = std::visit(add_one, material.bsdf);
+        else if constexpr (requires { material.bsdf.model_name(); })
+            indices_[number] = add_any(material.bsdf, material.two_sided, material.origin);
         else indices_[number] = add_one(material.bsdf);
     }
 
@@ -96,6 +102,22 @@ private:
         return {Kind::both_sides, {indices_[sides.front], indices_[sides.back]}};
     }
 
+    /// The scene's own types first, and then what they are made from.
+    MaterialIndex add_any(const AnyMaterial& material, bool two_sided, const Origin& origin) {
+        std::optional<MaterialIndex> index;
+        const auto try_as = [&]<class M>(std::type_identity<M>) {
+            if (const M* found = index ? nullptr : material.get<M>()) index = add(*found, two_sided, origin);
+        };
+        (try_as(std::type_identity<B>()), ...);
+        if constexpr (placed) (try_as(std::type_identity<model_of<B>>()), ...);
+        if (!index) no_place(origin);
+        return *index;
+    }
+
+    [[noreturn]] static void no_place(const Origin& origin) {
+        fail(origin, "this scene type has no place for that surface model; add it to the scene's Bsdfs<...>");
+    }
+
     template <Material M>
     MaterialIndex add(const M& material, bool two_sided, const Origin& origin) {
         if constexpr (Bsdf<M> && !placed)
@@ -110,7 +132,7 @@ private:
         constexpr std::size_t kind =
             itself < sizeof...(B) ? itself : first_of<std::is_constructible_v<B, const M&>...>();
         if constexpr (kind == sizeof...(B)) {
-            fail(origin, "this scene type has no place for that surface model; add it to the scene's Bsdfs<...>");
+            no_place(origin);
         } else {
             auto& list = std::get<kind>(data_.bsdfs);
             check_count(list.size(), MaterialIndex::max_position, origin, "surface models");

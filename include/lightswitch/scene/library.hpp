@@ -2,6 +2,7 @@
 
 // The surface models that scene files can name.
 
+#include <lightswitch/bsdf/any_material.hpp>
 #include <lightswitch/bsdf/conductor.hpp>
 #include <lightswitch/bsdf/dielectric.hpp>
 #include <lightswitch/bsdf/lambert.hpp>
@@ -26,7 +27,6 @@ template <class... B>
 struct Library {
     using Plain = Bsdfs<B...>;
     using Placed = Bsdfs<Textured<B>...>;
-    using Any = std::variant<B..., Textured<B>...>;
 };
 
 /// Common ones first: finding a model's code takes a comparison for each that comes before it.
@@ -39,9 +39,7 @@ using AllModels = Library<Lambert, Conductor, RoughConductor, Dielectric, Princi
 using AllBsdfs = detail::AllModels::Plain;
 /// The same with any parameter of a model from a texture, and layers over them.
 using TexturedBsdfs = detail::AllModels::Placed;
-/// Any of the library's surface models.
-using LibraryBsdf = detail::AllModels::Any;
-/// What a scene file holds.
-using LibraryDescription = SceneDescription<LibraryBsdf>;
+/// What a scene file holds: any materials.
+using LibraryDescription = SceneDescription<AnyMaterial>;
 
 }  // namespace lightswitch

@@ -111,7 +111,7 @@ inline void add_table(LibraryDescription& scene) {
     scene.add(block({-0.75, 0.72, 1.45}, {1.25, 0.77, 2.4}), wood);
     for (const double x : {-0.68, 1.1})
         for (const double z : {1.52, 2.25}) scene.add(block({x, -0.1, z}, {x + 0.08, 0.73, z + 0.08}), wood);
-    const auto stand = [&](double x, double z, double radius, LibraryBsdf bsdf) {
+    const auto stand = [&](double x, double z, double radius, AnyMaterial bsdf) {
         scene.add(Sphere{{x, 0.77 + radius, z}, radius}, scene.add(bsdf));
     };
     stand(-0.48, 2.02, 0.21, Dielectric{.eta = 1.5f});
@@ -237,19 +237,37 @@ inline LibraryDescription describe_furnace(float albedo = 0.5f) {
     return scene;
 }
 
+// Built, as any type of scene that can hold them: templates, so that only those which are used are compiled.
+
 /// `describe_cornell_box`, built.
-inline DiffuseScene cornell_box() { return build_scene<DiffuseBsdfs, Lights<TriangleLight>>(describe_cornell_box()); }
+template <class SceneType = DiffuseScene>
+SceneType cornell_box() {
+    return build_as<SceneType>(describe_cornell_box());
+}
 /// `describe_cornell_spheres`, built.
-inline FullScene cornell_spheres() { return build_scene<AllBsdfs, AllLights>(describe_cornell_spheres()); }
+template <class SceneType = FullScene>
+SceneType cornell_spheres() {
+    return build_as<SceneType>(describe_cornell_spheres());
+}
 /// `describe_cornell_sculpture`, built.
-inline FullScene cornell_sculpture() { return build_scene<AllBsdfs, AllLights>(describe_cornell_sculpture()); }
+template <class SceneType = FullScene>
+SceneType cornell_sculpture() {
+    return build_as<SceneType>(describe_cornell_sculpture());
+}
 /// `describe_still_life`, built.
-inline FullScene still_life() { return build_scene<AllBsdfs, AllLights>(describe_still_life()); }
+template <class SceneType = FullScene>
+SceneType still_life() {
+    return build_as<SceneType>(describe_still_life());
+}
 /// `describe_ajar_door`, built.
-inline FullScene ajar_door() { return build_scene<AllBsdfs, AllLights>(describe_ajar_door()); }
+template <class SceneType = FullScene>
+SceneType ajar_door() {
+    return build_as<SceneType>(describe_ajar_door());
+}
 /// `describe_furnace`, built.
-inline DiffuseScene furnace(float albedo = 0.5f) {
-    return build_scene<DiffuseBsdfs, Lights<TriangleLight>>(describe_furnace(albedo));
+template <class SceneType = DiffuseScene>
+SceneType furnace(float albedo = 0.5f) {
+    return build_as<SceneType>(describe_furnace(albedo));
 }
 
 /// Names that `describe` knows.

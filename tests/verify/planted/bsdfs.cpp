@@ -27,7 +27,7 @@ std::vector<PlantedBug> bsdf_bugs() {
     const Material planted_black = PlantedLambert{.reflectance = Rgb(0)};
     std::vector<PlantedBug> bugs;
 
-    const auto ball = [&](std::string_view name, const Material& material, const LibraryBsdf& right) {
+    const auto ball = [&](std::string_view name, const Material& material, const AnyMaterial& right) {
         bugs.push_back({name, "ball-in-sky", 2,
                         [=] { return std::pair(on_planted(ball_in_sky(material)), library_nee(ball_in_sky(right))); }});
     };
@@ -36,18 +36,18 @@ std::vector<PlantedBug> bsdf_bugs() {
 
     bugs.push_back({"refraction without the scale of radiance", "inside-glass", 2, [] {
                         const auto description = inside_glass<Material>(PlantedDielectric{radiance_unscaled});
-                        return std::pair(on_planted(description), library_nee(inside_glass<LibraryBsdf>(Dielectric{})));
+                        return std::pair(on_planted(description), library_nee(inside_glass<AnyMaterial>(Dielectric{})));
                     }});
     // Seen from inside, where the wrong index has total reflection nowhere.
     bugs.push_back({"refraction with the index reversed", "inside-glass", 2, [] {
                         const auto description = inside_glass<Material>(PlantedDielectric{refraction_reversed});
-                        return std::pair(on_planted(description), library_nee(inside_glass<LibraryBsdf>(Dielectric{})));
+                        return std::pair(on_planted(description), library_nee(inside_glass<AnyMaterial>(Dielectric{})));
                     }});
 
-    const auto floor = [&](std::string_view name, const Material& material, const LibraryBsdf& right) {
+    const auto floor = [&](std::string_view name, const Material& material, const AnyMaterial& right) {
         bugs.push_back({name, "floor-and-lamp", 2, [=] {
                             return std::pair(on_planted(floor_and_lamp(material, planted_black)),
-                                             library_nee(floor_and_lamp<LibraryBsdf>(right, Lambert{Rgb(0)})));
+                                             library_nee(floor_and_lamp<AnyMaterial>(right, Lambert{Rgb(0)})));
                         }});
     };
     const Rgb blue(0.2f, 0.5f, 0.8f);
@@ -61,7 +61,7 @@ std::vector<PlantedBug> bsdf_bugs() {
 
     bugs.push_back({"albedo 0.5 % too high in the value alone", "floor-under-far-lamp", 2, [planted_black] {
                         const Material bright = PlantedLambert{value_half_percent_up, Rgb(0.7f)};
-                        const LibraryBsdf right = Lambert{Rgb(0.7f)}, black = Lambert{Rgb(0)};
+                        const AnyMaterial right = Lambert{Rgb(0.7f)}, black = Lambert{Rgb(0)};
                         return std::pair(on_planted(floor_under_far_lamp(bright, planted_black)),
                                          library_nee(floor_under_far_lamp(right, black)));
                     }});
@@ -75,9 +75,9 @@ std::vector<PlantedBug> bsdf_bugs() {
 
 std::vector<CorrectPair> bsdf_copies() {
     const Material planted_black = PlantedLambert{none, Rgb(0)};
-    const auto floor = [=](std::string_view name, const Material& copy, const LibraryBsdf& original) {
+    const auto floor = [=](std::string_view name, const Material& copy, const AnyMaterial& original) {
         return CorrectPair{name, "floor-and-lamp", [=] {
-                               const LibraryBsdf black = Lambert{Rgb(0)};
+                               const AnyMaterial black = Lambert{Rgb(0)};
                                return std::pair(on_planted(floor_and_lamp(copy, planted_black)),
                                                 library_nee(floor_and_lamp(original, black)));
                            }};
@@ -88,7 +88,7 @@ std::vector<CorrectPair> bsdf_copies() {
             {"dielectric without a mistake", "ball-in-sky",
              [] {
                  return std::pair(on_planted(ball_in_sky<Material>(PlantedDielectric{})),
-                                  library_nee(ball_in_sky<LibraryBsdf>(Dielectric{})));
+                                  library_nee(ball_in_sky<AnyMaterial>(Dielectric{})));
              }},
             {"two lobes: path, path-nee", "floor-and-lamp", [=] {
                  const auto scene = build(floor_and_lamp<Material>(Coated{}, planted_black));

@@ -13,7 +13,7 @@ LibraryDescription sized(LibraryDescription scene, int side) {
 }
 
 LibraryDescription sky_alone() {
-    auto scene = ball_in_sky<LibraryBsdf>(Lambert{{0.8f, 0.5f, 0.2f}});
+    auto scene = ball_in_sky<AnyMaterial>(Lambert{{0.8f, 0.5f, 0.2f}});
     scene.add(level({0, -1, 0}, 3, 3), scene.add(TwoSided<Lambert>{{Rgb(0.6f)}}));
     return scene;
 }
@@ -28,7 +28,7 @@ LibraryDescription thin_lens() {
 
 /// 100 lamps of two triangles, of strengths from 1 to 50.
 LibraryDescription many_lamps() {
-    auto scene = empty_view<LibraryBsdf>("many-lamps", {0, 1.2, 3}, {0, 0.3, 0}, 45);
+    auto scene = empty_view<AnyMaterial>("many-lamps", {0, 1.2, 3}, {0, 0.3, 0}, 45);
     scene.add(level({0, 0, 0}, 1.2, 1.2), scene.add(Lambert{Rgb(0.7f)}));
     const std::size_t black = scene.add(Lambert{Rgb(0)});
     for (int i = 0; i < 100; ++i)
@@ -81,9 +81,9 @@ std::vector<CorrectPair> correct_pairs() {
     and_exact("path, exact", "furnace", furnace, 4, path);
     and_exact("path-nee, exact", "furnace", furnace, 4, nee);
     and_exact(
-        "path, exact", "inside-glass", [] { return inside_glass<LibraryBsdf>(Dielectric{}); }, 2.25f, path);
+        "path, exact", "inside-glass", [] { return inside_glass<AnyMaterial>(Dielectric{}); }, 2.25f, path);
     and_exact(
-        "path-nee, exact", "white ball-in-sky", [] { return ball_in_sky<LibraryBsdf>(Lambert{Rgb(1)}); }, 1, nee);
+        "path-nee, exact", "white ball-in-sky", [] { return ball_in_sky<AnyMaterial>(Lambert{Rgb(1)}); }, 1, nee);
     for (const auto& copies : {method_copies(), bsdf_copies(), light_copies(), pixel_copies()})
         pairs.insert(pairs.end(), copies.begin(), copies.end());
     return pairs;

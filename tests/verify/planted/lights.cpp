@@ -22,7 +22,7 @@ Estimator relit_round(const LibraryDescription& description, LightMistake mistak
 
 template <class M>
 Estimator under_sky(bool sine_missing, const M& method) {
-    LibraryDescription description = ball_in_sky<LibraryBsdf>(Lambert{Rgb(0.7f)});
+    LibraryDescription description = ball_in_sky<AnyMaterial>(Lambert{Rgb(0.7f)});
     description.sources.clear();
     description.add(level({0, -1, 0}, 2, 2), 0);
     return estimator(std::make_shared<const UnderSky<DiffuseScene>>(

@@ -17,14 +17,14 @@ std::vector<PlantedBug> method_bugs() {
                         }});
     };
     const auto floor = [] { return floor_and_lamp(); };
-    const auto panel = [] { return floor_under_panel<LibraryBsdf>(Lambert{Rgb(0.7f)}, Lambert{Rgb(0)}); };
-    const auto far_lamp = [] { return floor_under_far_lamp<LibraryBsdf>(Lambert{Rgb(0.7f)}, Lambert{Rgb(0)}); };
+    const auto panel = [] { return floor_under_panel<AnyMaterial>(Lambert{Rgb(0.7f)}, Lambert{Rgb(0)}); };
+    const auto far_lamp = [] { return floor_under_far_lamp<AnyMaterial>(Lambert{Rgb(0.7f)}, Lambert{Rgb(0)}); };
     nee("cosine missing in direct light", "floor-and-lamp", 2, NeeMistake::cosine_missing, floor);
     nee("geometric cosine in direct light", "faceted-ball-and-lamp", 2, NeeMistake::geometric_cosine,
         faceted_ball_and_lamp);
     nee("direct light counted twice", "floor-and-lamp", 2, NeeMistake::light_counted_twice, floor);
     nee("sky counted twice", "ball-in-sky", 2, NeeMistake::sky_counted_twice,
-        [] { return ball_in_sky<LibraryBsdf>(Lambert{Rgb(0.7f)}); });
+        [] { return ball_in_sky<AnyMaterial>(Lambert{Rgb(0.7f)}); });
     nee("lights ignored when met", "floor-under-panel", 2, NeeMistake::met_lights_ignored, panel);
     nee("MIS without the probability of selection", "floor-and-four-lamps", 2, NeeMistake::met_density_unselected,
         floor_and_four_lamps);

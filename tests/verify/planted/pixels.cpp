@@ -29,7 +29,7 @@ std::vector<PlantedBug> pixel_bugs() {
     };
     const auto floor = [] { return floor_and_lamp(); };
     const auto far_lamp = [] {
-        auto scene = floor_under_far_lamp<LibraryBsdf>(Lambert{Rgb(0.7f)}, Lambert{Rgb(0)});
+        auto scene = floor_under_far_lamp<AnyMaterial>(Lambert{Rgb(0.7f)}, Lambert{Rgb(0)});
         scene.film.width = scene.film.height = 32;
         return scene;
     };

@@ -77,12 +77,12 @@ SceneDescription<Material> floor_and_lamp(const Material& surface, const Materia
 }
 
 inline LibraryDescription floor_and_lamp(double eye_height = 0.6) {
-    return floor_and_lamp<LibraryBsdf>(Lambert{Rgb(0.7f)}, Lambert{Rgb(0)}, eye_height);
+    return floor_and_lamp<AnyMaterial>(Lambert{Rgb(0.7f)}, Lambert{Rgb(0)}, eye_height);
 }
 
 /// A ceiling that fills the image, lit only by the floor, on which the lamp shines.
 inline LibraryDescription indirect_ceiling() {
-    auto scene = empty_view<LibraryBsdf>("indirect-ceiling", {0, 1, 0.6}, {0, 1.4, 0}, 50);
+    auto scene = empty_view<AnyMaterial>("indirect-ceiling", {0, 1, 0.6}, {0, 1.4, 0}, 50);
     const std::size_t grey = scene.add(Lambert{Rgb(0.7f)});
     scene.add(level({0, 0, 0}, 2, 2), grey);
     scene.add(level({0, 1.4, 0}, 2, 2, false), grey);
@@ -122,7 +122,7 @@ inline LibraryDescription lamp_below_ceiling() {
 
 /// A floor close under four small lamps, each twice as strong as the one before.
 inline LibraryDescription floor_and_four_lamps() {
-    auto scene = empty_view<LibraryBsdf>("floor-and-four-lamps", {0, 0.6, 3}, {0, 0.3, 0}, 40);
+    auto scene = empty_view<AnyMaterial>("floor-and-four-lamps", {0, 0.6, 3}, {0, 0.3, 0}, 40);
     scene.add(level({0, 0, 0}, 1, 1), scene.add(Lambert{Rgb(0.7f)}));
     const std::size_t black = scene.add(Lambert{Rgb(0)});
     for (int i = 0; i < 4; ++i)
@@ -132,7 +132,7 @@ inline LibraryDescription floor_and_four_lamps() {
 
 /// A floor under a luminous sphere.
 inline LibraryDescription floor_and_round_lamp() {
-    auto scene = empty_view<LibraryBsdf>("floor-and-round-lamp", {0, 0.6, 3}, {0, 0.45, 0}, 40);
+    auto scene = empty_view<AnyMaterial>("floor-and-round-lamp", {0, 0.6, 3}, {0, 0.45, 0}, 40);
     scene.add(level({0, 0, 0}, 1, 1), scene.add(Lambert{Rgb(0.7f)}));
     scene.add(Sphere{{0, 0.7, 0}, 0.4}, scene.add(Lambert{Rgb(0)}), Rgb(4));
     return scene;
@@ -140,7 +140,7 @@ inline LibraryDescription floor_and_round_lamp() {
 
 /// A floor close under a luminous mesh with interpolated normals.
 inline LibraryDescription floor_and_faceted_lamp() {
-    auto scene = empty_view<LibraryBsdf>("floor-and-faceted-lamp", {0, 0.6, 3}, {0, 0.3, 0}, 40);
+    auto scene = empty_view<AnyMaterial>("floor-and-faceted-lamp", {0, 0.6, 3}, {0, 0.3, 0}, 40);
     scene.add(level({0, 0, 0}, 1, 1), scene.add(Lambert{Rgb(0.7f)}));
     scene.add(faceted_ball({0, 0.52, 0}, 0.5), scene.add(Lambert{Rgb(0)}), Rgb(4));
     return scene;
@@ -148,7 +148,7 @@ inline LibraryDescription floor_and_faceted_lamp() {
 
 /// A diffuse mesh with interpolated normals that fills the image, under a lamp that is out of view.
 inline LibraryDescription faceted_ball_and_lamp() {
-    auto scene = empty_view<LibraryBsdf>("faceted-ball-and-lamp", {0, 0.3, 3}, {0, 0.05, 0}, 22);
+    auto scene = empty_view<AnyMaterial>("faceted-ball-and-lamp", {0, 0.3, 3}, {0, 0.05, 0}, 22);
     scene.add(faceted_ball({0, 0, 0}, 0.7), scene.add(Lambert{Rgb(0.7f)}));
     scene.add(level({0, 2, 0.5}, 0.3, 0.3, false), scene.add(Lambert{Rgb(0)}), Rgb(16));
     return scene;
@@ -156,7 +156,7 @@ inline LibraryDescription faceted_ball_and_lamp() {
 
 /// A wall that stands on a floor, with the lamp behind it: the camera looks at its shadow.
 inline LibraryDescription wall_and_shadow() {
-    auto scene = empty_view<LibraryBsdf>("wall-and-shadow", {0, 0.5, 0.7}, {0, 0, 0.1}, 50);
+    auto scene = empty_view<AnyMaterial>("wall-and-shadow", {0, 0.5, 0.7}, {0, 0, 0.1}, 50);
     const std::size_t grey = scene.add(TwoSided<Lambert>{{Rgb(0.7f)}});
     scene.add(level({0, 0, 0}, 1, 1), grey);
     scene.add(quad({-1, 0, 0}, {1, 0, 0}, {1, 0.3, 0}, {-1, 0.3, 0}), grey);
@@ -166,7 +166,7 @@ inline LibraryDescription wall_and_shadow() {
 
 /// A large mirror on the floor, in which the lamp is seen, before a diffuse wall.
 inline LibraryDescription mirror_and_lamp() {
-    auto scene = empty_view<LibraryBsdf>("mirror-and-lamp", {0, 0.6, 3}, {0, 0.3, 0}, 40);
+    auto scene = empty_view<AnyMaterial>("mirror-and-lamp", {0, 0.6, 3}, {0, 0.3, 0}, 40);
     scene.add(level({0, 0, 0}, 2.5, 2.5), scene.add(Conductor{.reflectance = Rgb(0.9f)}));
     scene.add(quad({-1, 0, -1}, {1, 0, -1}, {1, 1, -1}, {-1, 1, -1}), scene.add(Lambert{Rgb(0.7f)}));
     scene.add(level({0, 1, 0}, 0.4, 0.4, false), scene.add(Lambert{Rgb(0)}), Rgb(4));

@@ -12,7 +12,7 @@ using Scene = LibraryDescription;
 
 /// A material on a ball and on the floor below it, under a lamp and a dim sky.
 Scene ball_on_floor(const std::function<std::size_t(Scene&)>& material) {
-    auto scene = empty_view<LibraryBsdf>("ball-on-floor", {0, 2, 4}, {0, 0.4, 0}, 40);
+    auto scene = empty_view<AnyMaterial>("ball-on-floor", {0, 2, 4}, {0, 0.4, 0}, 40);
     const std::size_t surface = material(scene);
     scene.add(level({0, 0, 0}, 2, 2), scene.add(Lambert{Rgb(0.5f)}));
     scene.add(Sphere{.center = {-0.8, 0.7, 0}, .radius = 0.7}, surface);

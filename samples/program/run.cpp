@@ -1,15 +1,10 @@
-#pragma once
-
-// What run.hpp declares, for the translation unit of one method to instantiate.
-
 #include "run.hpp"
 
 namespace lightswitch::program {
 
-template <class M>
-Rendered run(const AnyScene& any_scene, const M& method, const Job& job) {
+Rendered run(const AnyScene& any_scene, const AnyMethod& any_method, const Job& job) {
     return std::visit(
-        [&](const auto& scene) -> Rendered {
+        [&](const auto& scene, const auto& method) -> Rendered {
             const RenderStatistics* statistics = nullptr;
             Settings settings = job.settings;
             settings.observer = [&](const Progress& progress) { job.observer(progress, *statistics); };
@@ -18,12 +13,12 @@ Rendered run(const AnyScene& any_scene, const M& method, const Job& job) {
             session.run(job.budget);
             return {session.image(), session.statistics(), session.film().relative_error()};
         },
-        any_scene);
+        any_scene, any_method);
 }
 
-template <class M>
-Estimator make_estimator(const AnyScene& any_scene, const M& method, const Settings& settings) {
-    return std::visit([&](const auto& scene) { return estimator(scene, method, settings); }, any_scene);
+Estimator make_estimator(const AnyScene& any_scene, const AnyMethod& any_method, const Settings& settings) {
+    return std::visit([&](const auto& scene, const auto& method) { return estimator(scene, method, settings); },
+                      any_scene, any_method);
 }
 
 }  // namespace lightswitch::program

@@ -1,5 +1,0 @@
-#include "run_method.hpp"
-
-template lightswitch::program::Rendered lightswitch::program::run(const AnyScene&, const LightTracer&, const Job&);
-template lightswitch::Estimator lightswitch::program::make_estimator(const AnyScene&, const LightTracer&,
-                                                                     const Settings&);
