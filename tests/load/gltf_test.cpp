@@ -123,6 +123,19 @@ TEST_CASE("buffers and images come from files beside the scene, also with escape
     CHECK(contains(message_of([&] { load_gltf(folder.path() / "a.gltf"); }), "a.gltf: buffers[0]: "));
 }
 
+TEST_CASE("an image file is read once, however it is used") {
+    const Folder folder;
+    folder.write("image.png", "an image");
+    const auto path = folder.write("a.gltf", R"({"asset": {"version": "2.0"}, "images": [{"uri": "image.png"}]})");
+    detail::FileNotices notices;
+    detail::GltfFile file(path, notices);
+    CHECK(file.image(0) == "an image");
+    const std::size_t bytes = file.used_bytes();
+    std::filesystem::remove(folder.path() / "image.png");
+    CHECK(file.image(0) == "an image");
+    CHECK(file.used_bytes() == bytes);
+}
+
 TEST_CASE("indices of every size, strips and fans give the triangles of the specification") {
     const std::string square = floats({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 5, 5, 5});
     const DVec3 a(0, 0, 0), b(1, 0, 0), c(0, 1, 0), d(1, 1, 0);

@@ -6,6 +6,8 @@
 #include <lightswitch/load/obj_scene.hpp>
 #include <lightswitch/scene/any_scene.hpp>
 
+#include <chrono>
+
 using namespace lightswitch;
 using namespace lightswitch::test;
 
@@ -326,6 +328,45 @@ TEST_CASE("what is missing is noticed") {
     std::string many;
     for (int i = 0; i < 5000; ++i) many += "word" + std::to_string(i) + " 1\n";
     CHECK(Loaded(with(many)).notices.size() < 300);
+}
+
+TEST_CASE("files that are not there are looked for once, and not without end") {
+    const Folder folder;
+    for (int i = 0; i < 2000; ++i) folder.write("a file of a long name " + std::to_string(i), "");
+    std::string libraries, different, materials;
+    for (int i = 0; i < 2000; ++i) {
+        const std::string name = std::to_string(i);
+        libraries += "mtllib none.mtl\n";
+        different += "mtllib none" + name + ".mtl\n";
+        materials += "newmtl m" + name + "\nmap_Kd none.png\n";
+    }
+    folder.write("a.mtl", materials);
+    std::string used = "mtllib a.mtl\n" + std::string(a_square);
+    for (int i = 0; i < 2000; ++i) used += "usemtl m" + std::to_string(i) + "\n" + std::string(face);
+    const auto timed = [&](const std::string& text) {
+        const auto file = folder.write("a.obj", text);
+        Notices notices;
+        const auto start = std::chrono::steady_clock::now();
+        load_obj_scene(file, &notices);
+        CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(1));
+        return notices.at(0);
+    };
+    CHECK(contains(timed(libraries + std::string(a_square) + std::string(face)),
+                   "a.obj:1: there is no material file \"none.mtl\""));
+    CHECK(contains(timed(used), "there is no image \"none.png\": the material does without it (2000 times)"));
+    const Folder other;
+    const auto path = other.write("a.obj", different + std::string(a_square) + std::string(face));
+    CHECK(contains(message_of([&] { load_obj_scene(path); }), "names more than 1000 material files"));
+}
+
+TEST_CASE("the textures of a scene have an end") {
+    detail::TextureMemory memory;
+    const Origin where{"a.xml", 7, {}};
+    memory.add(std::size_t{15} << 30, where);
+    CHECK(contains(message_of([&] { memory.add((std::size_t{1} << 30) + 1, where); }),
+                   "a.xml:7: the textures of the scene take more than 16 GiB"));
+    CHECK_NOTHROW(memory.add(std::size_t{1} << 30, where));  // what was refused does not count
+    CHECK_THROWS_AS(memory.add(1, where), Error);
 }
 
 TEST_CASE("malformed material files are refused with file and line") {

@@ -175,11 +175,13 @@ private:
                 placed.push_back({group, place.to_world, place.origin});
                 continue;
             }
-            for (const Shape& shape : shapes) {
-                const Mesh& local = std::get<Mesh>(shape.geometry);
+            for (Shape& shape : shapes) {
+                Mesh& local = std::get<Mesh>(shape.geometry);
                 if (places.size() > 1) meshes_.spend(3 * local.triangles.size(), place.origin);
-                scene_.shapes.push_back({local.transformed(place.to_world), shape.material, shape.emission,
-                                         shape.origin, shape.emission_texture});
+                Mesh placed_mesh = places.size() > 1 ? local.transformed(place.to_world)
+                                                     : std::move(local).transformed(place.to_world);
+                scene_.shapes.push_back(
+                    {std::move(placed_mesh), shape.material, shape.emission, shape.origin, shape.emission_texture});
             }
         }
         if (placed.empty()) return;

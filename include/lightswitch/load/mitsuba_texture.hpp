@@ -2,6 +2,7 @@
 
 // Textures in Mitsuba's scene files.
 
+#include <lightswitch/load/texture_memory.hpp>
 #include <lightswitch/load/xml_color.hpp>
 #include <lightswitch/scene/library.hpp>
 #include <lightswitch/texture/load_bitmap.hpp>
@@ -124,10 +125,13 @@ private:
         element.boolean("accel", true);  // and what it is stored as in memory, which changes nothing either
         element.text("format");
         auto& bitmap = bitmaps_[{path, raw, filter, wrap}];
-        if (!bitmap)
-            bitmap = at_place(element.origin(), [&] {
+        if (!bitmap) {
+            auto read = at_place(element.origin(), [&] {
                 return std::make_shared<const Bitmap>(load_bitmap(path, {.raw = raw, .filter = filter, .wrap = wrap}));
             });
+            memory_.add(read->bytes(), element.origin());
+            bitmap = std::move(read);
+        }
         return Texture(bitmap, read_to_uv(element));
     }
 
@@ -140,6 +144,7 @@ private:
     const XmlFile& file_;
     std::map<pugi::xml_node, Texture> textures_;
     std::map<std::tuple<std::string, bool, TextureFilter, TextureWrap>, std::shared_ptr<const Bitmap>> bitmaps_;
+    TextureMemory memory_;
 };
 
 }  // namespace lightswitch::detail
