@@ -309,6 +309,15 @@ TEST_CASE("files are found by names of other systems") {
     CHECK(contains(notices.at(0), "2.mtl:3: a material of that name is known already"));
 }
 
+TEST_CASE("an image that is damaged is among the files that were opened") {
+    const Folder folder;
+    folder.write("broken.png", "what");
+    folder.write("a.mtl", with("map_Kd broken.png"));
+    const auto path =
+        folder.write("a.obj", "mtllib a.mtl\n" + std::string(a_square) + "usemtl m\n" + std::string(face));
+    CHECK(load_obj_scene(path).files.back() == (folder.path() / "broken.png").string());
+}
+
 TEST_CASE("what is missing is noticed") {
     const Loaded loaded("", "mtllib none.mtl\n" + std::string(a_square) + "usemtl m m\nf 1 2 3\nl 1 2\n");
     CHECK(loaded.noticed("scene.obj:1: there is no material file \"none.mtl\""));

@@ -33,6 +33,7 @@ public:
         }
         auto& bitmap = bitmaps_[{path->string(), use, map.clamp, map.base, map.gain, factor.x, factor.y, factor.z}];
         if (!bitmap) {
+            files_.insert(path->string());
             try {
                 bitmap = std::make_shared<const Bitmap>(bitmap_of(*path, map, use, factor));
             } catch (const Error& error) {
@@ -40,7 +41,6 @@ public:
                 return {};
             }
             memory_.add(bitmap->bytes(), map.origin);
-            files_.insert(path->string());
         }
         // In OBJ v grows upwards.
         const Vec3 scale(map.scale), offset(map.offset);
@@ -49,7 +49,7 @@ public:
         return texture;
     }
 
-    /// Those that were read.
+    /// Those that were opened, whether or not they could be read.
     const std::set<std::string>& files() const { return files_; }
 
 private:
