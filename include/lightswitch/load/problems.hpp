@@ -37,8 +37,8 @@ private:
 
 namespace detail {
 
-/// Takes down the problems, notices and files of one reading, each once. Everything that fails in a scene file comes through
-/// here: a reader throws `Error`, and `attempt` around it says what happens then.
+/// Takes down the problems, notices and files of one reading, each once. Everything that fails in a scene file comes
+/// through here: a reader throws `Error`, and `attempt` around it says what happens then.
 class ReadingLog {
 public:
     void problem(std::string text, std::string instead) {
