@@ -1,6 +1,7 @@
 #include "load/gltf_files.hpp"
 
 #include <lightswitch/load/gltf.hpp>
+#include <lightswitch/load/gltf_file.hpp>
 
 using namespace lightswitch;
 using namespace lightswitch::test;

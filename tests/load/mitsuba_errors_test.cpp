@@ -1,6 +1,7 @@
 #include "load/files.hpp"
 
 #include <lightswitch/load/mitsuba.hpp>
+#include <lightswitch/scene/check.hpp>
 
 #include <chrono>
 

@@ -4,6 +4,7 @@
 
 #include <lightswitch/film/image_io.hpp>
 #include <lightswitch/load/obj_scene.hpp>
+#include <lightswitch/load/texture_memory.hpp>
 #include <lightswitch/scene/any_scene.hpp>
 
 #include <chrono>
