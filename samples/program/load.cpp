@@ -41,6 +41,8 @@ LibraryDescription describe(const SceneOptions& options, Notices& notices, Probl
     if (is_mitsuba_file(scene)) return load_file(options, notices, problems);
     if (is_scene_file(scene)) {
         if (!options.defines.empty()) throw Error("--define: only Mitsuba scenes have parameters");
+        if (!options.search_paths.empty())
+            throw Error("--path: only the files that Mitsuba scenes name are looked for in other folders");
         if (!options.sensor.empty()) throw Error("--sensor: only Mitsuba scenes have cameras to choose from");
         return load_other_file(scene, notices);
     }
@@ -48,11 +50,12 @@ LibraryDescription describe(const SceneOptions& options, Notices& notices, Probl
     if (!stock) {
         std::error_code ignored;
         if (std::filesystem::exists(scene, ignored))
-            throw Error(fmt::format("{}: is not a scene: scene files end in {}", scene, scene_endings));
+            throw Error(fmt::format("{}: is not a scene: scene files end in {}", scene, scene_endings()));
         throw Error(fmt::format("there is no scene \"{}\"{}; a scene is a file that ends in {}, or one of {}", scene,
-                                suggestion(scene, stock::names), scene_endings, list(stock::names)));
+                                suggestion(scene, stock::names), scene_endings(), list(stock::names)));
     }
     if (!options.defines.empty()) throw Error("--define: the stock scenes have no parameters");
+    if (!options.search_paths.empty()) throw Error("--path: the stock scenes have no files");
     if (!options.sensor.empty()) throw Error("--sensor: the stock scenes have one camera each");
     return *stock;
 }

@@ -161,7 +161,7 @@ int run_command(int argc, char** argv) {
                                                                   : render_options.scene;
     if (scene.scene.empty())
         throw Error(fmt::format("{}: name a scene: a file that ends in {}, or one of {}", command.get_name(),
-                                scene_endings, list(stock::names)));
+                                scene_endings(), list(stock::names)));
     if (&command == &info_command) return info(info_options);
     return &command == &strategies_command ? strategies(strategies_options) : render(render_options);
 }

@@ -85,7 +85,7 @@ int parse_max_depth(std::string_view text) {
 
 void add_scene_options(CLI::App& app, SceneOptions& options) {
     app.add_option("SCENE", options.scene,
-                   "a scene file, which ends in\n" + std::string(scene_endings) + ",\nor one of " + list(stock::names))
+                   "a scene file, which ends in\n" + scene_endings() + ",\nor one of " + list(stock::names))
         ->type_name("");
     add_values(
         app, "-D,--define", "NAME=VALUE",
@@ -102,7 +102,7 @@ void add_scene_options(CLI::App& app, SceneOptions& options) {
             if (text.empty()) throw Error("--path: the name is empty");
             options.search_paths.emplace_back(text);
         },
-        "where the scene's files are looked for besides; may be repeated");
+        "where the files that a Mitsuba scene names are looked for besides;\nmay be repeated");
     add_name(app, "--sensor", "ID", options.sensor,
              "which of the scene's cameras: its id, or its number from 0\n(default: the first)");
     app.add_flag(
@@ -166,7 +166,7 @@ void add_render(CLI::App& app, RenderOptions& options) {
         "(default: "
         "what the scene\nasks for, or auto)");
     add_name(app, "--stats", "FILE.json", options.stats, "write the render's numbers as JSON; - is standard output");
-    app.add_flag("-q,--quiet", options.quiet, "no progress, no notices on mesh files, no summary");
+    app.add_flag("-q,--quiet", options.quiet, "no progress, no notices on scene and mesh files, no summary");
     add_method_options(app, options.of_method);
     app.footer(
         "Of --spp, --seconds and --error the limit that is met first ends the render. Ctrl-C, SIGTERM and SIGHUP end\n"
@@ -269,7 +269,7 @@ void add_verify(CLI::App& app, VerifyCommand& command) {
         app, "--report", "FILE.html", command.report,
         "a page with images, maps of differences and p-values, error over\ntime and all numbers. Needs no network");
     add_name(app, "--json", "FILE.json", command.json, "write the verdicts as JSON; - is standard output");
-    app.add_flag("-q,--quiet", command.quiet, "no progress, no notices on mesh files, no text");
+    app.add_flag("-q,--quiet", command.quiet, "no progress, no notices on scene and mesh files, no text");
     add_method_options(app, command.of_methods);
     app.footer(
         "Renders independent images by each method and compares them with the reference's by Welch's t-test: all\n"
@@ -303,7 +303,7 @@ void add_strategies(CLI::App& app, StrategiesCommand& command) {
     app.add_flag("--unweighted", command.unweighted,
                  "every strategy as if there were no other: each finds by\nitself all light of its path length, or "
                  "none of it");
-    app.add_flag("-q,--quiet", command.quiet, "no progress, no notices on mesh files, no text");
+    app.add_flag("-q,--quiet", command.quiet, "no progress, no notices on scene and mesh files, no text");
     app.footer(
         "Bidirectional path tracing joins s vertices of a path from a light with t vertices of a path from the\n"
         "camera, the lens included. The picture has a row for every path length, s + t - 1, and in it the strategies\n"

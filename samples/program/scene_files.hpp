@@ -10,8 +10,8 @@
 
 namespace lightswitch::program {
 
-/// The endings, in words.
-inline constexpr std::string_view scene_endings = ".xml (Mitsuba), .gltf, .glb, .obj, .ply or .stl";
+/// The endings, in words: ".xml (Mitsuba), .gltf, .glb, .obj, .ply or .stl".
+std::string scene_endings();
 
 bool is_mitsuba_file(std::string_view path);
 /// Whether the name ends like that of any scene file; capitals count as small letters.

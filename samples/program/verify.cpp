@@ -171,7 +171,7 @@ Contest make_contest(const VerifyCommand& command, const std::stop_token& stop) 
     if (command.scene.scene.empty())
         throw Error(fmt::format(
             "verify: name a scene (a file that ends in {}, or one of {}), or files with --images and --against",
-            scene_endings, list(stock::names)));
+            scene_endings(), list(stock::names)));
     load(contest, command, size);
     const SceneSummary& summary = contest.loaded->summary;
     contest.files.insert(contest.files.end(), summary.files.begin(), summary.files.end());

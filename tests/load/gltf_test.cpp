@@ -1,5 +1,6 @@
 #include "load/gltf_files.hpp"
 
+#include <lightswitch/load/gltf_file.hpp>
 #include <lightswitch/load/scene_file.hpp>
 
 using namespace lightswitch;
@@ -121,6 +122,19 @@ TEST_CASE("buffers and images come from files beside the scene, also with escape
     CHECK(same(corners(mesh_of(scene)), {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}}));
     std::filesystem::remove(folder.path() / "the buffer.bin");
     CHECK(contains(message_of([&] { load_gltf(folder.path() / "a.gltf"); }), "a.gltf: buffers[0]: "));
+}
+
+TEST_CASE("an image file is read once, however it is used") {
+    const Folder folder;
+    folder.write("image.png", "an image");
+    const auto path = folder.write("a.gltf", R"({"asset": {"version": "2.0"}, "images": [{"uri": "image.png"}]})");
+    detail::FileNotices notices;
+    detail::GltfFile file(path, notices);
+    CHECK(file.image(0) == "an image");
+    const std::size_t bytes = file.used_bytes();
+    std::filesystem::remove(folder.path() / "image.png");
+    CHECK(file.image(0) == "an image");
+    CHECK(file.used_bytes() == bytes);
 }
 
 TEST_CASE("indices of every size, strips and fans give the triangles of the specification") {

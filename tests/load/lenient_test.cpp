@@ -14,14 +14,18 @@ struct Read {
 };
 
 /// A scene of a default camera and `text`, which begins in line 2, read leniently. It must be fit to be built.
-Read lenient(const std::string& text, const std::string& version = "3.0.0") {
+Read lenient(const std::string& text, const std::string& version = "3.0.0", const std::string& sensor = "") {
     const Folder folder;
     folder.write("triangle.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     folder.write("broken.obj", "v 0 0 0\nv 1 0 x\n");
+    for (const char* name : {"broken.hdr", "broken.png", "broken.spd"}) folder.write(name, "what");
+    folder.write("grey.spd", "400 0.5\n700 0.5\n");
+    folder.write("parts.xml", "<scene version=\"3.0.0\"/>");
     const auto path = folder.write(
         "room.xml", "<scene version=\"" + version + "\"><sensor type=\"perspective\"/>\n" + text + "</scene>");
     Read result;
-    result.scene = load_mitsuba(path, MitsubaOptions{.strictness = Strictness::lenient, .problems = &result.problems});
+    result.scene = load_mitsuba(
+        path, MitsubaOptions{.strictness = Strictness::lenient, .sensor = sensor, .problems = &result.problems});
     CHECK_NOTHROW(detail::check(result.scene));
     for (const Problem& problem : result.problems) {
         CHECK(contains(problem.text, "room.xml"));
@@ -194,6 +198,59 @@ TEST_CASE("cameras, films and filters that are not known are the usual ones") {
     // A camera keeps its side when its scale is taken out.
     const DMat4 mirrored{{-2, 0, 0, 0}, {0, 2, 0, 0}, {0, 0, 2, 0}, {1, 2, 3, 1}};
     CHECK(detail::without_scale(mirrored) == DMat4{{-1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {1, 2, 3, 1}});
+}
+
+TEST_CASE("what has no type, but needs one, is left out or the usual one") {
+    for (const char* bsdf : {"<bsdf/>", "<bsdf><rgb name=\"reflectance\" value=\"0.1\"/></bsdf>"}) {
+        const auto read = material(bsdf, "it is diffuse");
+        CHECK(read.bsdf.as<Lambert>().reflectance == Rgb(0.5f));
+    }
+    CHECK(material("<bsdf>" + metal + "</bsdf>", "the bsdf inside takes its place").bsdf.get<Conductor>());
+    const Read integrator = lenient("<integrator><integer name=\"max_depth\" value=\"7\"/></integrator>");
+    REQUIRE(integrator.problems.size() == 1);
+    CHECK(contains(integrator.problems[0].text, "<integrator>: the attribute \"type\" is missing"));
+    CHECK(integrator.problems[0].instead == "it is ignored");
+    CHECK_FALSE(integrator.scene.max_depth);
+
+    const Read sampler = lenient(
+        "<sensor type=\"perspective\" id=\"seen\"><float name=\"fov\" value=\"30\"/><sampler><integer "
+        "name=\"sample_count\" value=\"7\"/></sampler></sensor>",
+        "3.0.0", "seen");
+    REQUIRE(sampler.problems.size() == 1);
+    CHECK(contains(sampler.problems[0].text, "<sampler>: the attribute \"type\" is missing"));
+    CHECK(sampler.problems[0].instead == "it is ignored");
+    CHECK(sampler.scene.camera.fov == 30);
+    CHECK_FALSE(sampler.scene.samples);
+}
+
+TEST_CASE("instances that cannot be built are left out, and others stay") {
+    const auto instance = [](const std::string& scale) {
+        return "<shape type=\"instance\"><ref id=\"g\"/><transform name=\"to_world\"><scale " + scale +
+               "/></transform></shape>";
+    };
+    const Read read =
+        lenient("<shape type=\"shapegroup\" id=\"g\"><shape type=\"cube\"/></shape>" + instance("value=\"2\"") +
+                instance("x=\"0.0001\"") + instance("y=\"0\"") + instance("value=\"1e-3\""));
+    CHECK(read.scene.instances.size() == 2);
+    REQUIRE(read.problems.size() == 2);
+    CHECK(contains(read.problems[0].text, "squeezes the group by more than 1 : 1000"));
+    CHECK(contains(read.problems[1].text, "cannot be inverted"));
+    for (const Problem& problem : read.problems) CHECK(problem.instead == "it is left out");
+}
+
+TEST_CASE("all files that were opened are known, also those that are damaged") {
+    const auto string = [](const std::string& name) { return "<string name=\"filename\" value=\"" + name + "\"/>"; };
+    const auto read = lenient(
+        "<shape type=\"obj\">" + string("broken.obj") + "</shape><emitter type=\"envmap\">" + string("broken.hdr") +
+        "</emitter><shape type=\"obj\">" + string("triangle.obj") + "<bsdf type=\"diffuse\"><spectrum " +
+        "name=\"reflectance\" filename=\"grey.spd\"/></bsdf></shape><shape type=\"obj\">" + string("triangle.obj") +
+        "</shape><texture type=\"bitmap\">" + string("broken.png") + "</texture><bsdf type=\"diffuse\"><spectrum " +
+        "name=\"reflectance\" filename=\"broken.spd\"/></bsdf><shape type=\"obj\">" + string("none.obj") +
+        "</shape><include filename=\"parts.xml\"/>");
+    std::multiset<std::string> names;
+    for (const std::string& file : read.scene.files) names.insert(std::filesystem::path(file).filename().string());
+    CHECK(names == std::multiset<std::string>{"broken.hdr", "broken.obj", "broken.png", "broken.spd", "grey.spd",
+                                              "parts.xml", "room.xml", "triangle.obj"});
 }
 
 TEST_CASE("what is not understood in the file itself is passed over") {

@@ -1,6 +1,7 @@
 #include "load/files.hpp"
 
 #include <lightswitch/load/scene_file.hpp>
+#include <lightswitch/scene/check.hpp>
 
 #include <chrono>
 
@@ -284,6 +285,55 @@ TEST_CASE("what a scene file cannot say is refused with file, line and element")
          "room.xml:4: <emitter type=\"constant\">: is the second environment"},
     };
     for (const Case& c : cases) check(c, head, "</scene>");
+}
+
+TEST_CASE("what contains itself, or is in very many others, is refused and does not exhaust the stack") {
+    const auto id = [](int i) { return "\"a" + std::to_string(i) + "\""; };
+    const auto texture = [&](int i, int inner) {
+        return "<texture type=\"scale\" id=" + id(i) + "><ref id=" + id(inner) + "/></texture>\n";
+    };
+    const auto integrator = [&](int i, int inner) {
+        return "<integrator type=\"aov\" id=" + id(i) + "><ref id=" + id(inner) + "/></integrator>\n";
+    };
+    const auto mask = [&](int i) {
+        return "<bsdf type=\"mask\" id=" + id(i) + "><ref id=" + id(i + 1) + "/></bsdf>\n";
+    };
+    const auto bump = [&](int i) {
+        return "<bsdf type=\"bumpmap\" id=" + id(i) + "><texture type=\"checkerboard\"/><ref id=" + id(i + 1) +
+               "/></bsdf>\n";
+    };
+    constexpr int many = 20'000;
+    const auto last = "<bsdf type=\"diffuse\" id=" + id(many) + "/>\n";
+    std::string textures, integrators, masks, bumps, upwards;
+    for (int i = 0; i < 1000; ++i) textures += texture(i, i + 1);
+    for (int i = 0; i < many; ++i) bumps += bump(i);
+    for (int i = 0; i < many; ++i) masks += mask(i);
+    for (int i = many; i-- > many - 65;) upwards += mask(i);
+    const std::string height = "<bsdf type=\"bumpmap\"><ref id=" + id(0) + "/><bsdf type=\"diffuse\"/></bsdf>\n";
+    const Case cases[] = {
+        {texture(0, 0), "room.xml:3: <texture type=\"scale\">: contains itself"},
+        {texture(0, 1) + texture(1, 0), "room.xml:4: <texture type=\"scale\">: contains itself"},
+        {texture(1, 0) + texture(0, 1) + height, "room.xml:4: <texture type=\"scale\">: contains itself"},
+        {textures + texture(1000, 0), "<texture type=\"scale\">: contains itself, or is in more than 64 textures"},
+        {integrator(0, 0), "room.xml:3: <integrator type=\"aov\">: contains itself, or is in more than 64"},
+        {"<integrator type=\"aov\"><integrator type=\"aov\" id=" + id(0) + "><ref id=" + id(0) +
+             "/></integrator></integrator>",
+         "room.xml:3: <integrator type=\"aov\">: contains itself"},
+        {masks + last, "room.xml:68: <bsdf type=\"mask\">: is in more than 64 other bsdfs"},
+        {bumps + last, "room.xml:68: <bsdf type=\"bumpmap\">: is in more than 64 other bsdfs"},
+        {last + upwards, "room.xml:68: <bsdf type=\"mask\">: more than 64 materials lie over each other"},
+    };
+    for (const Case& c : cases) {
+        check(c, head, "</scene>");
+        const Folder folder;
+        const auto path = folder.write("room.xml", head + c.text + "</scene>");
+        LibraryDescription scene;
+        CHECK_NOTHROW(scene = load_mitsuba(path, MitsubaOptions{.strictness = Strictness::lenient}));
+        CHECK_NOTHROW(detail::check(scene));
+    }
+    std::string layers = last;
+    for (int i = many; i-- > many - 64;) layers = mask(i) + layers;
+    CHECK(error_of(head + layers + "</scene>") == "no error");
 }
 
 TEST_CASE("what a camera cannot be is refused") {

@@ -7,7 +7,10 @@
 #include <lightswitch/load/mtl.hpp>
 #include <lightswitch/load/obj.hpp>
 #include <lightswitch/load/scene_file.hpp>
+#include <lightswitch/load/texture_memory.hpp>
 #include <lightswitch/scene/any_scene.hpp>
+
+#include <chrono>
 
 using namespace lightswitch;
 using namespace lightswitch::test;
@@ -310,6 +313,15 @@ TEST_CASE("files are found by names of other systems") {
     CHECK(contains(notices.at(0), "2.mtl:3: a material of that name is known already"));
 }
 
+TEST_CASE("an image that is damaged is among the files that were opened") {
+    const Folder folder;
+    folder.write("broken.png", "what");
+    folder.write("a.mtl", with("map_Kd broken.png"));
+    const auto path =
+        folder.write("a.obj", "mtllib a.mtl\n" + std::string(a_square) + "usemtl m\n" + std::string(face));
+    CHECK(load_obj_scene(path).files.back() == (folder.path() / "broken.png").string());
+}
+
 TEST_CASE("what is missing is noticed") {
     const Loaded loaded("", "mtllib none.mtl\n" + std::string(a_square) + "usemtl m m\nf 1 2 3\nl 1 2\n");
     CHECK(loaded.noticed("scene.obj:1: there is no material file \"none.mtl\""));
@@ -329,6 +341,45 @@ TEST_CASE("what is missing is noticed") {
     std::string many;
     for (int i = 0; i < 5000; ++i) many += "word" + std::to_string(i) + " 1\n";
     CHECK(Loaded(with(many)).notices.size() < 300);
+}
+
+TEST_CASE("files that are not there are looked for once, and not without end") {
+    const Folder folder;
+    for (int i = 0; i < 2000; ++i) folder.write("a file of a long name " + std::to_string(i), "");
+    std::string libraries, different, materials;
+    for (int i = 0; i < 2000; ++i) {
+        const std::string name = std::to_string(i);
+        libraries += "mtllib none.mtl\n";
+        different += "mtllib none" + name + ".mtl\n";
+        materials += "newmtl m" + name + "\nmap_Kd none.png\n";
+    }
+    folder.write("a.mtl", materials);
+    std::string used = "mtllib a.mtl\n" + std::string(a_square);
+    for (int i = 0; i < 2000; ++i) used += "usemtl m" + std::to_string(i) + "\n" + std::string(face);
+    const auto timed = [&](const std::string& text) {
+        const auto file = folder.write("a.obj", text);
+        Notices notices;
+        const auto start = std::chrono::steady_clock::now();
+        load_obj_scene(file, &notices);
+        CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(1));
+        return notices.at(0);
+    };
+    CHECK(contains(timed(libraries + std::string(a_square) + std::string(face)),
+                   "a.obj:1: there is no material file \"none.mtl\""));
+    CHECK(contains(timed(used), "there is no image \"none.png\": the material does without it (2000 times)"));
+    const Folder other;
+    const auto path = other.write("a.obj", different + std::string(a_square) + std::string(face));
+    CHECK(contains(message_of([&] { load_obj_scene(path); }), "names more than 1000 material files"));
+}
+
+TEST_CASE("the textures of a scene have an end") {
+    detail::TextureMemory memory;
+    const Origin where{"a.xml", 7, {}};
+    memory.add(std::size_t{15} << 30, where);
+    CHECK(contains(message_of([&] { memory.add((std::size_t{1} << 30) + 1, where); }),
+                   "a.xml:7: the textures of the scene take more than 16 GiB"));
+    CHECK_NOTHROW(memory.add(std::size_t{1} << 30, where));  // what was refused does not count
+    CHECK_THROWS_AS(memory.add(1, where), Error);
 }
 
 TEST_CASE("malformed material files are refused with file and line") {

@@ -3,6 +3,8 @@
 
 #include <lightswitch/load/serialized.hpp>
 
+#include <chrono>
+
 #if LIGHTSWITCH_HAS_ZLIB
 #include <zlib.h>
 #endif
@@ -185,6 +187,22 @@ TEST_CASE("malformed .serialized files are errors that say what is wrong") {
     damaged.back() = static_cast<char>(damaged.back() ^ 1);
     CHECK(contains(error_of(damaged), "the compressed data is damaged: incorrect data check"));
 }
+
+#if LIGHTSWITCH_MAPS_FILES
+
+TEST_CASE("of a large file with many meshes only the one that is asked for is read") {
+    const File file;
+    const Folder folder;
+    // A hole of half a GiB between the mesh and the table.
+    const auto path = folder.write("a.serialized", file.mesh());
+    std::filesystem::resize_file(path, std::uintmax_t(1) << 29);
+    std::ofstream(path, std::ios::binary | std::ios::app) << number(std::uint64_t{0}) << number(std::uint32_t{1});
+    const auto start = std::chrono::steady_clock::now();
+    for (int i = 0; i < 20; ++i) CHECK(load_serialized(path).triangles.size() == 1);
+    CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(1));
+}
+
+#endif
 
 TEST_CASE("counts that the file cannot hold cost no memory") {
     const auto counts = [](std::uint64_t vertices, std::uint64_t triangles) {

@@ -91,6 +91,8 @@ TEST_CASE("--sensor and --path") {
              {{"info", "room.xml", "--sensor", "2"}, "there is no sensor \"2\"; known are 0 to 1, \"plan\""},
              {{"info", "room.xml", "--sensor", ""}, "--sensor: the name is empty"},
              {{"info", "room.xml", "--path", ""}, "--path: the name is empty"},
+             {{"info", "meshes/t.obj", "--path", "meshes"}, "--path: only the files that Mitsuba scenes name"},
+             {{"info", "furnace", "--path", "meshes"}, "--path: the stock scenes have no files"},
              {{"info", "furnace", "--sensor", "1"}, "--sensor: the stock scenes have one camera each"}}) {
         const Ended ended = run(workspace, words);
         CHECK(is_user_error(ended));

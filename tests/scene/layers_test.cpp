@@ -52,6 +52,11 @@ TEST_CASE("layers: what is impossible is refused with a reason") {
     deep.add(Lambert{});
     for (std::size_t i = 0; i < 65; ++i) deep.add(Blend{i, i, half});
     CHECK(refusal(luminous_ball(deep)).find("more than 64 materials") != std::string::npos);
+    // From the top, it is not followed down to its end.
+    LibraryDescription downwards;
+    for (std::size_t i = 0; i < 100'000; ++i) downwards.add(Mask{i + 1, half});
+    downwards.add(Lambert{});
+    CHECK(refusal(luminous_ball(downwards)).find("more than 64 materials") != std::string::npos);
 
     LibraryDescription plain;
     plain.add(Lambert{});

@@ -54,8 +54,9 @@ inline std::optional<std::filesystem::path> find_loosely(std::string_view text,
     if (text.empty() || text.size() > 4096 || text.find('\0') != std::string_view::npos) return {};
     std::string slashes(text);
     std::replace(slashes.begin(), slashes.end(), '\\', '/');
-    std::vector<std::filesystem::path> names{std::string(text), slashes};
-    names.push_back(names.back().filename());
+    std::vector<std::filesystem::path> names{std::string(text)};
+    for (const auto& name : {std::filesystem::path(slashes), std::filesystem::path(slashes).filename()})
+        if (name != names.back()) names.push_back(name);
     std::error_code error;
     for (const auto& name : names) {
         if (name.empty()) continue;

@@ -130,8 +130,7 @@ private:
         if (!node.matrix.empty()) {
             for (std::size_t i = 0; i < 16; ++i)
                 result[static_cast<int>(i / 4)][static_cast<int>(i % 4)] = node.matrix[i];
-            if (result[0].w != 0 || result[1].w != 0 || result[2].w != 0 || result[3].w != 1)
-                fail(where, "has a matrix that is not affine");
+            if (!is_affine(result)) fail(where, "has a matrix that is not affine");
             return result;
         }
         if (!node.rotation.empty()) {
@@ -148,19 +147,12 @@ private:
         return result;
     }
 
-    /// How much the longest direction is stretched beside the shortest, to a factor of 9; infinite where there is no
-    /// inverse.
-    static double squeeze(const DMat4& matrix) {
-        const DMat3 linear(matrix);
-        return largest_entry(linear) * largest_entry(glm::inverse(linear));
-    }
-
     /// Puts a mesh where nodes want it: as shapes of its own, or as a group where several do.
     void place(int mesh, std::vector<Place>& places) {
         constexpr double most = 1e12;      // beyond, normals would be rounding errors
         constexpr double instances = 100;  // what is squeezed more is not precise as an instance
         std::erase_if(places, [&](const Place& place) {
-            const bool flat = !(squeeze(place.to_world) < most);
+            const bool flat = !(squeeze(DMat3(place.to_world)) < most);
             if (flat) notices_.add(place.origin, "a mesh that is scaled to nothing is skipped");
             return flat;
         });
@@ -170,15 +162,17 @@ private:
         const auto group = scene_.groups.size();
         std::vector<LibraryDescription::Instance> placed;
         for (const Place& place : places) {
-            if (places.size() > 1 && squeeze(place.to_world) <= instances) {
+            if (places.size() > 1 && squeeze(DMat3(place.to_world)) <= instances) {
                 placed.push_back({group, place.to_world, place.origin});
                 continue;
             }
-            for (const Shape& shape : shapes) {
-                const Mesh& local = std::get<Mesh>(shape.geometry);
+            for (Shape& shape : shapes) {
+                Mesh& local = std::get<Mesh>(shape.geometry);
                 if (places.size() > 1) meshes_.spend(3 * local.triangles.size(), place.origin);
-                scene_.shapes.push_back({local.transformed(place.to_world), shape.material, shape.emission,
-                                         shape.origin, shape.emission_texture});
+                Mesh placed_mesh = places.size() > 1 ? local.transformed(place.to_world)
+                                                     : std::move(local).transformed(place.to_world);
+                scene_.shapes.push_back(
+                    {std::move(placed_mesh), shape.material, shape.emission, shape.origin, shape.emission_texture});
             }
         }
         if (placed.empty()) return;

@@ -67,14 +67,13 @@ public:
         return bytes.substr(view.byteOffset, view.byteLength);
     }
 
-    /// The file in an image, still encoded; those of a file of its own belong to `keep`.
-    std::string_view image(std::size_t number, std::string& keep) {
-        const Resource& image = images_.at(number);
+    /// The file in an image, still encoded.
+    std::string_view image(std::size_t number) {
+        Resource& image = images_.at(number);
         const Origin where = origin("images", number);
         if (image.view >= 0) return view(image.view, where);
         if (image.uri.empty()) fail(where, "has neither a uri nor a bufferView");
-        keep = fetch(image.uri, where);
-        return keep;
+        return fetched(image, where);
     }
 
 private:
@@ -159,8 +158,7 @@ private:
         const Origin where = origin("buffers", static_cast<std::size_t>(number));
         std::string_view bytes = binary_;
         if (!buffer.uri.empty()) {
-            if (!buffer.bytes) buffer.bytes = fetch(buffer.uri, where);
-            bytes = *buffer.bytes;
+            bytes = fetched(buffer, where);
         } else if (number != 0 || binary_.empty()) {
             fail(where, "has no uri, so its bytes are nowhere");
         }
@@ -169,6 +167,11 @@ private:
             fail(where, "has " + std::to_string(bytes.size()) + " bytes, but its byteLength is " +
                             std::to_string(buffer.length));
         return bytes.substr(0, buffer.length);
+    }
+
+    std::string_view fetched(Resource& resource, const Origin& where) {
+        if (!resource.bytes) resource.bytes = fetch(resource.uri, where);
+        return *resource.bytes;
     }
 
     std::string fetch(const std::string& uri, const Origin& where) {

@@ -6,6 +6,7 @@
 
 #if LIGHTSWITCH_HAS_GLTF
 
+#include <lightswitch/load/texture_memory.hpp>
 #include <lightswitch/texture/stb_decode.hpp>
 #include <lightswitch/texture/texture.hpp>
 
@@ -136,9 +137,8 @@ private:
         const auto [number, channels, encoding, filter, wrap, level] = key;
         std::shared_ptr<const Bitmap> result;
         if (level == always) {
-            std::string keep;
             const Origin where = file_.origin("images", number);
-            const std::string_view bytes = file_.image(number, keep);
+            const std::string_view bytes = file_.image(number);
             if (bytes.empty()) fail(where, "is empty");
             result = std::make_shared<const Bitmap>(
                 decode_stb(bytes, where.file + ": " + where.element, encoding, {filter, wrap}, channels));
@@ -152,16 +152,13 @@ private:
             result = std::make_shared<const Bitmap>(whole->width(), whole->height(), std::move(texels),
                                                     TexelEncoding::linear, TextureLookup{filter, wrap});
         }
-        bytes_ += result->bytes();
-        if (bytes_ > most_bytes) fail(file_.origin("images", number), "is too much: all textures take more than 8 GiB");
+        memory_.add(result->bytes(), file_.origin("images", number));
         return bitmaps_.emplace(key, std::move(result)).first->second;
     }
 
-    static constexpr std::size_t most_bytes = std::size_t{1} << 33;
-
     GltfFile& file_;
     std::map<Key, std::shared_ptr<const Bitmap>> bitmaps_;
-    std::size_t bytes_ = 0;
+    TextureMemory memory_;
 };
 
 }  // namespace lightswitch::detail

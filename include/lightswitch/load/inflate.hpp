@@ -36,8 +36,6 @@ public:
     Inflate& operator=(const Inflate&) = delete;
     ~Inflate() { inflateEnd(&stream_); }
 
-    const Origin& where() const { return where_; }
-
     template <std::unsigned_integral T>
     T number() {
         if (end_ - begin_ < sizeof(T)) refill();

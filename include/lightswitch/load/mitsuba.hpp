@@ -17,7 +17,6 @@ public:
     MitsubaReader(const std::filesystem::path& path, const MitsubaOptions& options, ReadingLog& log)
         : options_(options), log_(log), file_(path, options.defines, options.search_paths, log) {
         scene_.name = path.stem().string();
-        scene_.files = file_.files();
     }
 
     LibraryDescription read() {
@@ -33,7 +32,8 @@ public:
         LibraryDescription unused;
         MaterialReader checked(file_, textures, unused);
         for (const auto node : element.objects("bsdf")) checked.read(node);
-        if (const auto node = element.object("integrator")) read_integrator(file_, *node, scene_);
+        if (const auto node = element.object("integrator"))
+            log_.attempt("it is ignored", [&] { read_integrator(file_, *node, scene_); });
         const auto sensors = element.objects("sensor");
         if (!sensors.empty()) {
             const auto sensor = choose(sensors);
@@ -45,8 +45,8 @@ public:
         for (const auto node : element.objects("emitter")) emitters.read(node);
         element.refuse_media();
         element.finish();
-        for (std::string& file : textures.files()) scene_.files.push_back(std::move(file));
         if (sensors.empty()) place_camera(element);
+        scene_.files = log_.files();
         return std::move(scene_);
     }
 
@@ -70,7 +70,7 @@ private:
         const auto number = parse_integer(wanted);
         if (number && *number >= 0 && static_cast<std::size_t>(*number) < sensors.size())
             return sensors[static_cast<std::size_t>(*number)];
-        fail({scene_.files[0], 0, {}},
+        fail({log_.files()[0], 0, {}},
              "there is no sensor " + quote(wanted) + "; known are 0 to " + std::to_string(sensors.size() - 1) + ids);
     }
 

@@ -87,12 +87,11 @@ void read_metal_name(XmlElement& element, Metal& metal) {
     metal.k = index->k;
 }
 
-/// `distribution`, and `alpha` against `alpha_u` and `alpha_v`.
-template <class Rough>
-void read_facets(XmlElement& element, Rough& model) {
+/// `distribution`.
+inline Facets read_facets(XmlElement& element) {
     static const std::map<std::string, Facets> distributions{{"beckmann", Facets::beckmann}, {"ggx", Facets::ggx}};
-    model.distribution = element.one_of("distribution", "beckmann", distributions);
     element.boolean("sample_visible", true);  // changes only the noise
+    return element.one_of("distribution", "beckmann", distributions);
 }
 
 /// Reads a `<bsdf>` that is a surface model, with Mitsuba's defaults for what is left out.
@@ -189,7 +188,7 @@ private:
     }
     template <class B>
     B rough(B model) {
-        read_facets(element_, model);
+        model.distribution = read_facets(element_);
         const bool u = given("alpha_u"), v = given("alpha_v");
         if (u != v || (given("alpha") && u))
             element_.problem("alpha_u", "give either alpha, or both alpha_u and alpha_v",
@@ -205,12 +204,11 @@ private:
     }
 
     AnyMaterial rough_plastic() {
-        RoughPlastic facets;
-        read_facets(element_, facets);
+        const Facets facets = read_facets(element_);
         const float alpha = clamped(element_, "alpha", as_roughness, static_cast<float>(element_.number("alpha", 0.1)));
         const float eta = read_relative_index(element_, "polypropylene");
         if (!as_relative_index.contains(eta)) element_.error("the index of refraction is impossible");
-        RoughPlastic model{.distribution = facets.distribution, .alpha = alpha, .eta = eta};
+        RoughPlastic model{.distribution = facets, .alpha = alpha, .eta = eta};
         model.nonlinear = element_.boolean("nonlinear", false);
         return finished(model);
     }

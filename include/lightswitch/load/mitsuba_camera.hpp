@@ -176,32 +176,39 @@ inline void read_sensor(const XmlFile& file, pugi::xml_node node, LibraryDescrip
         scene.film = file.log().attempt(
             "it is Mitsuba's default", [&] { return read_film(file, *film, scene.exposure); },
             [&] { return scene.film; });
-    if (const auto sampler = element.object("sampler")) scene.samples = read_sampler(file, *sampler);
+    if (const auto sampler = element.object("sampler"))
+        file.log().attempt("it is ignored", [&] { scene.samples = read_sampler(file, *sampler); });
     element.finish();
 }
 
 /// Reads the depths of an `<integrator>`, or of the first one inside that has some; which method renders is not the
 /// file's choice.
 inline void read_integrator(const XmlFile& file, pugi::xml_node node, LibraryDescription& scene) {
-    XmlElement element(file, node);
-    const std::string type = element.type();
-    const auto inner = element.objects("integrator");
-    if (type != "path")
-        file.log().notice(element.origin(),
-                          "which method renders is not the file's choice: only the path length counts");
-    if (element.boolean("hide_emitters", false))
-        file.log().notice(element.origin("hide_emitters"), "is not supported: lamps are seen");
-    if (type == "direct") {
-        scene.max_depth = 2;
-    } else if (type == "path" || element.has("max_depth")) {
-        scene.max_depth = element.integer("max_depth", -1).value_or(-1);
-        scene.rr_depth = element.integer("rr_depth", 1).value_or(5);
-    } else if (!inner.empty()) {
-        return read_integrator(file, inner[0], scene);
+    constexpr int deepest = 64;
+    for (int depth = 0; node; ++depth) {
+        XmlElement element(file, node);
+        if (depth == deepest)
+            element.error("contains itself, or is in more than " + std::to_string(deepest) + " integrators");
+        const std::string type = element.type();
+        const auto inner = element.objects("integrator");
+        node = {};
+        if (type != "path")
+            file.log().notice(element.origin(),
+                              "which method renders is not the file's choice: only the path length counts");
+        if (element.boolean("hide_emitters", false))
+            file.log().notice(element.origin("hide_emitters"), "is not supported: lamps are seen");
+        if (type == "direct") {
+            scene.max_depth = 2;
+        } else if (type == "path" || element.has("max_depth")) {
+            scene.max_depth = element.integer("max_depth", -1).value_or(-1);
+            scene.rr_depth = element.integer("rr_depth", 1).value_or(5);
+        } else if (!inner.empty()) {
+            node = inner[0];
+        }
+        element.accept({"strict_normals", "samples_per_pass", "block_size", "timeout"});
+        if (type != "path") element.accept_rest();
+        element.finish();
     }
-    element.accept({"strict_normals", "samples_per_pass", "block_size", "timeout"});
-    if (type != "path") element.accept_rest();
-    element.finish();
 }
 
 }  // namespace lightswitch::detail

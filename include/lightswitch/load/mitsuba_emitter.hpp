@@ -83,7 +83,6 @@ private:
         });
         if (to_world) source.to_world = DMat3(*to_world);
         add_environment(element, std::move(source));
-        scene_.files.push_back(path.string());
     }
 
     const XmlFile& file_;

@@ -21,11 +21,15 @@ public:
             if (known->second == under_way) fail(file_.origin(node), "the bsdf contains itself");
             return known->second;
         }
+        if (depth_ > deepest_layers)
+            fail(file_.origin(node), "is in more than " + std::to_string(deepest_layers) + " other bsdfs");
         materials_[node] = under_way;
+        ++depth_;
         const bool nested = !nested_bsdfs(node).empty();
         const std::size_t index = file_.log().attempt(
             nested ? "the bsdf inside takes its place" : "it is diffuse", [&] { return read_new(node); },
             [&] { return stand_in(node); });
+        --depth_;
         return materials_[node] = index;
     }
 
@@ -75,9 +79,11 @@ private:
             }
         }
         Rgb color(0.5f);
-        XmlElement element(file_, node);
-        for (const char* name : {"reflectance", "diffuse_reflectance", "base_color", "transmittance"})
-            if (element.has(name)) color = glm::clamp(element.color(name, color), 0.0f, 1.0f);
+        file_.log().attempt("it is grey", [&] {
+            XmlElement element(file_, node);
+            for (const char* name : {"reflectance", "diffuse_reflectance", "base_color", "transmittance"})
+                if (element.has(name)) color = glm::clamp(element.color(name, color), 0.0f, 1.0f);
+        });
         return scene_.add(Lambert{.reflectance = color}, file_.origin(node));
     }
 
@@ -151,6 +157,8 @@ private:
 
     std::size_t add(MaterialLayer layer, const Origin& origin) {
         if (const std::string problem = layer_problem(layer); !problem.empty()) fail(origin, problem);
+        depths_.resize(scene_.materials.size(), unknown_depth);
+        depth_over(scene_, layer, origin, depths_);
         return scene_.add(std::move(layer), origin);
     }
 
@@ -197,6 +205,8 @@ private:
     TextureReader& textures_;
     LibraryDescription& scene_;
     std::map<pugi::xml_node, std::size_t> materials_;
+    int depth_ = 0;            ///< of the bsdf that is being read: how many it is in
+    std::vector<int> depths_;  ///< of layers, by material
     std::optional<std::size_t> grey_, black_, invisible_;
 };
 

@@ -78,6 +78,7 @@ private:
         const auto inner = element.objects("shape");
         if (inner.size() != 1) element.error("needs one shapegroup, not " + std::to_string(inner.size()));
         element.finish();
+        if (const std::string problem = instance_problem(to_world); !problem.empty()) element.error(problem);
         scene_.instances.push_back({read_group(inner[0]), to_world, element.origin()});
     }
 
@@ -114,7 +115,7 @@ private:
         else if (type == "disk") mesh = disk(to_world);
         else element.unknown_type("rectangle, cube, disk, sphere, cylinder, obj, ply and serialized");
         if (type != "disk") element.accept({"face_normals"});  // they are flat anyway
-        return flip ? mesh.flipped() : mesh;
+        return flip ? std::move(mesh).flipped() : std::move(mesh);
     }
 
     static Sphere read_sphere(XmlElement& element, const DMat4& to_world, bool flip) {
@@ -135,8 +136,9 @@ private:
         const DVec3 axis = (to - from) / length, side = any_tangent(axis);
         const DMat4 placed(glm::dvec4(radius * side, 0), glm::dvec4(radius * glm::cross(axis, side), 0),
                            glm::dvec4(to - from, 0), glm::dvec4(from, 1));
-        const Mesh mesh = cylinder(to_world * placed);
-        return flip ? mesh.flipped() : mesh;  // a reflection leaves its front outside, as in Mitsuba 3.9
+        Mesh mesh = cylinder(to_world * placed);
+        return flip ? std::move(mesh).flipped()
+                    : std::move(mesh);  // a reflection leaves its front outside, as in Mitsuba 3.9
     }
 
     Mesh read_mesh_file(XmlElement& element, const DMat4& to_world, bool flip) {
@@ -156,7 +158,6 @@ private:
                    : type == "ply" ? load_ply(path, use, &notices)
                                    : load_serialized(path, index, use, &notices);
         });
-        scene_.files.push_back(path.string());
         for (std::string& notice : notices) file_.log().notice(std::move(notice));
 
         if (flip_v)
@@ -167,7 +168,7 @@ private:
         // inside out.
         if (!has_normals && linear_determinant(to_world) < 0) mesh = std::move(mesh).flipped();
         if (!has_normals && !flat) mesh.smooth();
-        return flip ? std::move(mesh).flipped() : mesh;
+        return flip ? std::move(mesh).flipped() : std::move(mesh);
     }
 
     const XmlFile& file_;

@@ -2,6 +2,7 @@
 
 // Textures in Mitsuba's scene files.
 
+#include <lightswitch/load/texture_memory.hpp>
 #include <lightswitch/load/xml_color.hpp>
 #include <lightswitch/scene/library.hpp>
 #include <lightswitch/texture/load_bitmap.hpp>
@@ -34,27 +35,23 @@ public:
     /// The only `<texture>` inside, whatever its name, which must be whole. What a texture of type `scale` multiplies
     /// it by goes into `scale`.
     Texture only_texture(XmlElement& element, float& scale) {
-        const auto nodes = element.objects("texture");
-        if (nodes.size() != 1) element.error("needs exactly one texture inside, not " + std::to_string(nodes.size()));
-        XmlElement inner(file_, nodes[0]);
-        if (inner.type() != "scale") return read_or_throw(nodes[0]);
-        scale *= static_cast<float>(inner.number("scale", 1));
-        const Texture result = only_texture(inner, scale);
-        inner.finish();
-        return result;
+        constexpr int deepest = 64;
+        pugi::xml_node node = only_texture_in(element);
+        for (int depth = 0;; ++depth) {
+            XmlElement inner(file_, node);
+            if (inner.type() != "scale") return read_or_throw(node);
+            if (depth == deepest)
+                inner.error("contains itself, or is in more than " + std::to_string(deepest) + " textures of its type");
+            scale *= static_cast<float>(inner.number("scale", 1));
+            node = only_texture_in(inner);
+            inner.finish();
+        }
     }
     /// A parameter that is a number or colour, or a texture. Without `otherwise` it must be there.
     Texture value_or_texture(XmlElement& element, const std::string& name, std::optional<float> otherwise = {}) {
         if (const auto node = element.texture(name)) return read(*node);
         if (!otherwise && !element.has(name)) element.error("the parameter " + quote(name) + " is missing");
         return Texture(element.color(name, otherwise.value_or(0)));
-    }
-
-    /// The image files that were read.
-    std::vector<std::string> files() const {
-        std::vector<std::string> result;
-        for (const auto& [options, bitmap] : bitmaps_) result.push_back(std::get<0>(options));
-        return result;
     }
 
     /// A surface model with those of its parameters that `element` gives as textures.
@@ -74,6 +71,12 @@ public:
     }
 
 private:
+    static pugi::xml_node only_texture_in(XmlElement& element) {
+        const auto nodes = element.objects("texture");
+        if (nodes.size() != 1) element.error("needs exactly one texture inside, not " + std::to_string(nodes.size()));
+        return nodes[0];
+    }
+
     static UvTransform read_to_uv(XmlElement& element) {
         const auto to_uv = element.transform("to_uv");
         if (!to_uv) return {};
@@ -122,10 +125,13 @@ private:
         element.boolean("accel", true);  // and what it is stored as in memory, which changes nothing either
         element.text("format");
         auto& bitmap = bitmaps_[{path, raw, filter, wrap}];
-        if (!bitmap)
-            bitmap = at_place(element.origin(), [&] {
+        if (!bitmap) {
+            auto read = at_place(element.origin(), [&] {
                 return std::make_shared<const Bitmap>(load_bitmap(path, {.raw = raw, .filter = filter, .wrap = wrap}));
             });
+            memory_.add(read->bytes(), element.origin());
+            bitmap = std::move(read);
+        }
         return Texture(bitmap, read_to_uv(element));
     }
 
@@ -138,6 +144,7 @@ private:
     const XmlFile& file_;
     std::map<pugi::xml_node, Texture> textures_;
     std::map<std::tuple<std::string, bool, TextureFilter, TextureWrap>, std::shared_ptr<const Bitmap>> bitmaps_;
+    TextureMemory memory_;
 };
 
 }  // namespace lightswitch::detail

@@ -104,10 +104,9 @@ private:
     }
 
     double number(std::string_view word) const {
-        const auto value = parse_number(word);
-        if (!value) fail(origin_, quote(word) + " is not a finite number");
-        if (!(std::abs(*value) <= 1e30)) fail(origin_, quote(word) + " is beyond 1e30");
-        return *value;
+        const double value = finite_number(word, origin_);
+        if (!(std::abs(value) <= 1e30)) fail(origin_, quote(word) + " is beyond 1e30");
+        return value;
     }
 
     std::optional<DVec3> color(const std::string& keyword, std::string_view line, FileNotices& notices) const {

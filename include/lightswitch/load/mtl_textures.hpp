@@ -4,6 +4,7 @@
 
 #include <lightswitch/load/find_file.hpp>
 #include <lightswitch/load/mtl.hpp>
+#include <lightswitch/load/texture_memory.hpp>
 #include <lightswitch/texture/load_bitmap.hpp>
 #include <lightswitch/texture/texture.hpp>
 
@@ -25,22 +26,21 @@ public:
 
     /// The texture times `factor`; nothing, and a notice, when there is no image that can be read.
     std::optional<Texture> read(const MtlMap& map, Use use, const Rgb& factor = Rgb(1)) {
-        const auto path = find_loosely(map.file, folders_);
+        const auto& path = find(map.file);
         if (!path) {
             notices_.add(map.origin, "there is no image " + quote(map.file) + ": the material does without it");
             return {};
         }
         auto& bitmap = bitmaps_[{path->string(), use, map.clamp, map.base, map.gain, factor.x, factor.y, factor.z}];
         if (!bitmap) {
+            files_.insert(path->string());
             try {
                 bitmap = std::make_shared<const Bitmap>(bitmap_of(*path, map, use, factor));
             } catch (const Error& error) {
                 notices_.add(map.origin, "the material does without an image: " + std::string(error.what()));
                 return {};
             }
-            total_ += bitmap->bytes();
-            if (total_ > most_bytes) fail(map.origin, "the images of the materials take more than 16 GiB");
-            files_.insert(path->string());
+            memory_.add(bitmap->bytes(), map.origin);
         }
         // In OBJ v grows upwards.
         const Vec3 scale(map.scale), offset(map.offset);
@@ -49,11 +49,16 @@ public:
         return texture;
     }
 
-    /// Those that were read.
+    /// Those that were opened, whether or not they could be read.
     const std::set<std::string>& files() const { return files_; }
 
 private:
-    static constexpr std::size_t most_bytes = std::size_t(1) << 34;
+    /// The file of that name; each is looked for once, since that may go through whole folders.
+    const std::optional<std::filesystem::path>& find(const std::string& name) {
+        const auto [entry, is_new] = found_.try_emplace(name);
+        if (is_new) entry->second = find_loosely(name, folders_);
+        return entry->second;
+    }
 
     Bitmap bitmap_of(const std::filesystem::path& path, const MtlMap& map, Use use, const Rgb& factor) const {
         const TextureWrap wrap = map.clamp ? TextureWrap::clamp : TextureWrap::repeat;
@@ -82,7 +87,8 @@ private:
     std::map<std::tuple<std::string, Use, bool, double, double, float, float, float>, std::shared_ptr<const Bitmap>>
         bitmaps_;
     std::set<std::string> files_;
-    std::size_t total_ = 0;
+    TextureMemory memory_;
+    std::map<std::string, std::optional<std::filesystem::path>, std::less<>> found_;  ///< by the name in the file
 };
 
 }  // namespace lightswitch::detail

@@ -11,6 +11,7 @@
 
 #include <filesystem>
 #include <map>
+#include <set>
 
 namespace lightswitch {
 
@@ -178,7 +179,8 @@ private:
         } else if (with_materials_ && keyword == "usemtl") {
             use_material(line);
         } else if (with_materials_ && keyword == "mtllib") {
-            contents_.libraries.push_back({std::string(trimmed(line)), origin_.line});
+            if (library_names_.emplace(trimmed(line)).second)
+                contents_.libraries.push_back({std::string(trimmed(line)), origin_.line});
         } else if (std::find(skipped.begin(), skipped.end(), keyword) != skipped.end()) {
             notices_.add(origin_, "the statement " + quote(keyword) + " is skipped");
         } else if (std::find(meaningless.begin(), meaningless.end(), keyword) == meaningless.end()) {
@@ -190,9 +192,8 @@ private:
         DVec3 result(0);
         int count = 0;
         for (std::string_view word = next_word(line); !word.empty(); word = next_word(line), ++count) {
-            const auto number = parse_number(word);
-            if (!number) fail(origin_, quote(word) + " is not a finite number");
-            if (count < 3) result[count] = *number;
+            const double number = finite_number(word, origin_);
+            if (count < 3) result[count] = number;
         }
         if (count < fewest || count > most)
             fail(origin_, quote(keyword) + " takes " + std::to_string(fewest) +
@@ -299,6 +300,7 @@ private:
     int line_without_normal_ = 0;
     std::vector<std::uint32_t> corners_;
     std::map<std::string, std::size_t, std::less<>> material_numbers_;
+    std::set<std::string, std::less<>> library_names_;
     PolygonCutter cutter_;
     ObjContents contents_;
     FileNotices notices_;

@@ -89,17 +89,20 @@ private:
 
     /// A statement `mtllib` names one file, perhaps with spaces in its name, or several.
     void read_library(const ObjContents::Name& library) {
-        const std::vector<std::filesystem::path> folders{path_.parent_path()};
-        if (const auto file = find_loosely(library.text, folders)) return read_file(*file, library);
+        const auto find = [&](std::string_view name) {
+            // Each may go through whole folders.
+            if (++searches_ > 1000) fail(place(library.line), "names more than 1000 material files");
+            return find_loosely(name, {path_.parent_path()});
+        };
+        if (const auto file = find(library.text)) return read_file(*file);
         std::string_view rest = library.text;
         for (std::string_view name = next_word(rest); !name.empty(); name = next_word(rest))
-            if (const auto file = find_loosely(name, folders)) read_file(*file, library);
+            if (const auto file = find(name)) read_file(*file);
             else mtl_notices_.add(place(library.line), "there is no material file " + quote(name));
     }
 
-    void read_file(const std::filesystem::path& file, const ObjContents::Name& library) {
+    void read_file(const std::filesystem::path& file) {
         if (!read_.insert(file.string()).second) return;
-        if (read_.size() > 1000) fail(place(library.line), "names more than 1000 material files");
         MtlReader(file).read(materials_, mtl_notices_);
         scene_.files.push_back(file.string());
         if (std::find(folders_.begin(), folders_.end(), file.parent_path()) == folders_.end())
@@ -158,6 +161,7 @@ private:
     LibraryDescription scene_;
     MtlReader::Materials materials_;
     std::set<std::string> read_;
+    int searches_ = 0;
     std::vector<std::filesystem::path> folders_;
 };
 

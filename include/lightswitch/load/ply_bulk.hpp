@@ -241,7 +241,6 @@ public:
     }
 
 private:
-    static bool is_space(char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; }
     bool at_end_of_word(const char* at) const { return at == end_ || is_space(*at); }
     void skip_space() {
         for (; at_ != end_ && is_space(*at_); ++at_)

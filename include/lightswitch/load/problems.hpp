@@ -37,8 +37,8 @@ private:
 
 namespace detail {
 
-/// Takes down the problems and notices of one reading, each once. Everything that fails in a scene file comes through
-/// here: a reader throws `Error`, and `attempt` around it says what happens then.
+/// Takes down the problems, notices and files of one reading, each once. Everything that fails in a scene file comes
+/// through here: a reader throws `Error`, and `attempt` around it says what happens then.
 class ReadingLog {
 public:
     void problem(std::string text, std::string instead) {
@@ -70,6 +70,13 @@ public:
         attempt(instead, read, [] {});
     }
 
+    /// A file that was opened, whether or not it could be read.
+    void file(const std::string& path) {
+        if (known_files_.insert(path).second) files_.push_back(path);
+    }
+
+    /// Each file once, in the order of reading.
+    const std::vector<std::string>& files() const { return files_; }
     const Problems& problems() const { return problems_; }
     const Notices& notices() const { return notices_; }
 
@@ -78,7 +85,8 @@ private:
 
     Problems problems_;
     Notices notices_;
-    std::set<std::string> said_;
+    std::set<std::string> said_, known_files_;
+    std::vector<std::string> files_;
 };
 
 }  // namespace detail

@@ -30,8 +30,6 @@ namespace detail {
 
 #if LIGHTSWITCH_HAS_ZLIB
 
-inline constexpr bool has_zlib = true;
-
 /// One mesh of a file whose bytes are `bytes`. The format is described in Mitsuba's documentation of its shape plugins.
 class SerializedReader {
 public:
@@ -163,10 +161,6 @@ private:
     FileNotices notices_;
 };
 
-#else
-
-inline constexpr bool has_zlib = false;
-
 #endif
 
 }  // namespace detail
@@ -174,8 +168,9 @@ inline constexpr bool has_zlib = false;
 inline Mesh load_serialized(const std::filesystem::path& path, [[maybe_unused]] int shape,
                             [[maybe_unused]] FileNormals normals, [[maybe_unused]] Notices* notices) {
 #if LIGHTSWITCH_HAS_ZLIB
-    const std::string bytes = read_file(path, detail::max_mesh_bytes);
-    return detail::SerializedReader(bytes, path.string(), shape, normals).read(notices);
+    // Of a large file only the mesh itself is read.
+    const FileBytes bytes(path, detail::max_mesh_bytes);
+    return detail::SerializedReader(bytes.view(), path.string(), shape, normals).read(notices);
 #else
     fail(detail::file_origin(path), "this program was built without zlib: build it with zlib, or use .ply");
 #endif

@@ -99,11 +99,8 @@ inline void check_samples(const Spectrum& spectrum, const Origin& where) {
 /// The finite numbers in a list that commas or spaces separate.
 inline std::vector<double> parse_list(std::string_view text, const Origin& where) {
     std::vector<double> numbers;
-    for (auto word = next_word(text, ", \t\r\n"); !word.empty(); word = next_word(text, ", \t\r\n")) {
-        const auto number = parse_number(word);
-        if (!number) fail(where, quote(word) + " is not a finite number");
-        numbers.push_back(*number);
-    }
+    for (auto word = next_word(text, ", \t\r\n"); !word.empty(); word = next_word(text, ", \t\r\n"))
+        numbers.push_back(finite_number(word, where));
     return numbers;
 }
 

@@ -3,6 +3,7 @@
 // STL: triangles from computer aided design and for 3D printing, ASCII or binary.
 
 #include <lightswitch/core/file.hpp>
+#include <lightswitch/film/bytes.hpp>
 #include <lightswitch/load/mesh_file.hpp>
 #include <lightswitch/load/number.hpp>
 
@@ -100,11 +101,7 @@ private:
                                std::to_string(size));
     }
 
-    std::uint32_t number(std::size_t at) const {
-        std::uint32_t result = 0;
-        for (std::size_t i = 4; i-- > 0;) result = result << 8 | static_cast<unsigned char>(bytes_[at + i]);
-        return result;
-    }
+    std::uint32_t number(std::size_t at) const { return get_little_endian<std::uint32_t>(bytes_.data() + at); }
 
     void binary() {
         const std::size_t count = number(80);
@@ -173,7 +170,6 @@ private:
     std::string keyword() { return lower_case(word()); }
 
     std::string_view word() {
-        const auto is_space = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; };
         std::size_t begin = 0;
         while (begin < rest_.size() && is_space(rest_[begin])) ++begin;
         pass(rest_.substr(0, begin));

@@ -2,6 +2,7 @@
 
 // What every loader needs: numbers, words, line numbers, and quotes of text that may be hostile.
 
+#include <lightswitch/core/error.hpp>
 #include <lightswitch/core/math.hpp>
 
 #include <algorithm>
@@ -19,11 +20,14 @@ namespace lightswitch::detail {
 /// The finite number that `word` spells, from its first to its last character, or nothing. Decimal or scientific
 /// notation whatever the locale; a leading plus is allowed.
 std::optional<double> parse_number(std::string_view word);
-/// The same for an integer that fits in 64 bits.
+/// The same where there must be one: throws `Error`, of that place, for anything else.
+double finite_number(std::string_view word, const Origin& where);
+/// What `parse_number` does for an integer that fits in 64 bits.
 std::optional<std::int64_t> parse_integer(std::string_view word);
 
 inline bool is_blank(char c) { return c == ' ' || c == '\t'; }
 inline bool is_line_end(char c) { return c == '\n' || c == '\r'; }
+inline bool is_space(char c) { return is_blank(c) || is_line_end(c); }
 
 /// Cuts the first word off `text`; empty at the end. Words are separated by any of `separators`.
 std::string_view next_word(std::string_view& text, std::string_view separators = " \t\r\n");
@@ -65,6 +69,12 @@ inline std::optional<double> parse_number(std::string_view word) {
     if (error != std::errc() || end != word.data() + word.size()) return {};
     if (!is_finite(value)) return {};
     return value;
+}
+
+inline double finite_number(std::string_view word, const Origin& where) {
+    const auto number = parse_number(word);
+    if (!number) fail(where, quote(word) + " is not a finite number");
+    return *number;
 }
 
 inline std::optional<std::int64_t> parse_integer(std::string_view word) {

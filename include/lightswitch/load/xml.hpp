@@ -44,12 +44,10 @@ public:
     pugi::xml_node find(const std::string& id) const;
     /// The element that a `<ref>` stands for, of any tag; empty when there is none.
     pugi::xml_node target(pugi::xml_node reference) const { return find(reference.attribute("id").value()); }
-    /// The file of that name that `node` speaks of, which need not exist.
+    /// The file of that name that `node` speaks of, and which is going to be read. It need not exist.
     std::filesystem::path locate(pugi::xml_node node, const std::string& name) const;
     /// Whether the element was written for Mitsuba 0.x.
     bool is_old(pugi::xml_node node) const { return part(node).is_old; }
-    /// The XML files that were read.
-    std::vector<std::string> files() const;
 
     /// Throws unless `node` has each of the `required` attributes. That it has others than the `optional` ones besides,
     /// or one twice, is a problem.
@@ -101,6 +99,7 @@ inline XmlFile::XmlFile(const std::filesystem::path& path, const Defines& define
 
 /// Reads one file, all of it, and returns its root.
 inline pugi::xml_node XmlFile::read(const std::filesystem::path& path, int depth) {
+    log_.file(path.string());
     parts_.push_back(std::make_unique<Part>(Part{path.string(), read_file(path, max_bytes - bytes_), LineIndex("")}));
     Part& part = *parts_.back();
     const Origin whole{part.file, 0, {}};
@@ -198,15 +197,10 @@ inline std::filesystem::path XmlFile::locate(pugi::xml_node node, const std::str
     folders.push_back(std::filesystem::path(part(node).file).parent_path());
     folders.insert(folders.end(), search_paths_.begin(), search_paths_.end());
     const FoundFile found = find_file(name, folders, folder);
+    if (std::error_code error; std::filesystem::is_regular_file(found.path, error)) log_.file(found.path.string());
     if (!found.exactly)
         log_.notice(origin(node), "there is no " + quote(name) + ": " + quote(found.path.string()) + " is read");
     return found.path;
-}
-
-inline std::vector<std::string> XmlFile::files() const {
-    std::vector<std::string> result;
-    for (const auto& part : parts_) result.push_back(part->file);
-    return result;
 }
 
 inline void XmlFile::check_attributes(pugi::xml_node node, std::initializer_list<std::string_view> required,

@@ -17,7 +17,6 @@ public:
     /// Checks attributes and sorts the children; parameters given twice are a problem.
     XmlElement(const XmlFile& file, pugi::xml_node node);
 
-    const XmlFile& file() const { return file_; }
     ReadingLog& log() const { return file_.log(); }
     Origin origin() const { return file_.origin(node_); }
     std::string type() const { return node_.attribute("type").value(); }

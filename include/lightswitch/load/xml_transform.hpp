@@ -4,7 +4,7 @@
 
 #include <lightswitch/core/math.hpp>
 #include <lightswitch/load/xml.hpp>
-#include <lightswitch/scene/description.hpp>
+#include <lightswitch/scene/check.hpp>
 
 #include <numbers>
 
@@ -114,8 +114,7 @@ inline DMat4 read_transform_step(const XmlFile& file, pugi::xml_node node) {
         const std::size_t size = numbers.size() == 16 ? 4 : 3;
         for (std::size_t i = 0; i < numbers.size(); ++i)
             result[static_cast<int>(i % size)][static_cast<int>(i / size)] = numbers[i];
-        if (result[0].w != 0 || result[1].w != 0 || result[2].w != 0 || result[3].w != 1)
-            fail(file.origin(node), "the matrix is not affine: its last row must be 0 0 0 1");
+        if (!is_affine(result)) fail(file.origin(node), "the matrix is not affine: its last row must be 0 0 0 1");
     } else {
         fail(file.origin(node), "unknown transform; known are translate, scale, rotate, lookat and matrix");
     }

@@ -105,8 +105,8 @@ inline void check(const Budget& budget) {
 /// A render that can be continued: what it has accumulated is a pure function of (scene, method, seed, sampling, number
 /// of iterations), whatever the threads and however often it was stopped in between. The scene must outlive it.
 ///
-/// The members that lead to the code of a method are outside the class, so that `compiled.hpp` can leave them to another
-/// file.
+/// The members that lead to the code of a method are outside the class, so that `compiled.hpp` can leave them to
+/// another file.
 template <class SceneType, class M, Executor E = TbbExecutor>
 class Session {
     static_assert(detail::RequireScene<SceneType>::value);

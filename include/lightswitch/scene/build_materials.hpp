@@ -66,8 +66,8 @@ private:
         count_ways(material.origin);
     }
 
-    /// Finds whether the latest layer is certain. If it is not, `presence` goes all ways down from it, where photons are
-    /// left.
+    /// Finds whether the latest layer is certain. If it is not, `presence` goes all ways down from it, where photons
+    /// are left.
     void count_ways(const Origin& origin) {
         constexpr double most = 65536;
         LayerRecord& layer = data_.layers.back();

@@ -90,23 +90,42 @@ inline std::vector<std::size_t> below(const MaterialLayer& layer) {
         layer);
 }
 
-/// `depths[i]` of a material that lies over others becomes the length of the longest chain of layers below it.
+/// How many layers may lie over each other.
+inline constexpr int deepest_layers = 64;
+inline constexpr int unknown_depth = -1;
+
+/// Length of the longest chain of layers from `layer` down, of which `above` others lie over it; it need not be in the
+/// scene yet. `depths[i]` is the length for material i, once it is known. Throws when it is more than `deepest_layers`.
 template <class Material>
-int layer_depth(const SceneDescription<Material>& scene, std::size_t number, std::vector<int>& depths) {
-    constexpr int unknown = -1, under_way = -2, deepest = 64;
+int depth_over(const SceneDescription<Material>& scene, const MaterialLayer& layer, const Origin& origin,
+               std::vector<int>& depths, int above = 0);
+
+/// The same from that material down.
+template <class Material>
+int layer_depth(const SceneDescription<Material>& scene, std::size_t number, std::vector<int>& depths, int above = 0) {
+    constexpr int under_way = -2;
     const auto& material = scene.materials[number];
     if (!material.layer) return 0;
     if (depths[number] == under_way) fail(material.origin, "the material contains itself");
-    if (depths[number] != unknown) return depths[number];
+    if (depths[number] != unknown_depth) return depths[number];
     depths[number] = under_way;
+    return depths[number] = depth_over(scene, *material.layer, material.origin, depths, above);
+}
+
+template <class Material>
+int depth_over(const SceneDescription<Material>& scene, const MaterialLayer& layer, const Origin& origin,
+               std::vector<int>& depths, int above) {
     int depth = 0;
-    for (const std::size_t inner : below(*material.layer)) {
-        if (inner >= scene.materials.size()) fail(material.origin, "the material inside does not exist");
-        depth = std::max(depth, layer_depth(scene, inner, depths));
-    }
-    if (depth >= deepest)
-        fail(material.origin, "more than " + std::to_string(deepest) + " materials lie over each other");
-    return depths[number] = depth + 1;
+    // Deeper down is not looked: each step takes room on the stack.
+    if (above >= deepest_layers) depth = deepest_layers;
+    else
+        for (const std::size_t inner : below(layer)) {
+            if (inner >= scene.materials.size()) fail(origin, "the material inside does not exist");
+            depth = std::max(depth, layer_depth(scene, inner, depths, above + 1));
+        }
+    if (depth >= deepest_layers)
+        fail(origin, "more than " + std::to_string(deepest_layers) + " materials lie over each other");
+    return depth + 1;
 }
 
 /// Whether `found(material)` is true of a material or of one that it lies over. Each is asked once, however often it is
@@ -180,6 +199,27 @@ void check_shapes(const SceneDescription<Material>& scene, const auto& shapes) {
     }
 }
 
+inline bool is_affine(const DMat4& m) { return m[0].w == 0 && m[1].w == 0 && m[2].w == 0 && m[3].w == 1; }
+
+/// How much the longest direction is stretched beside the shortest, to a factor of 9; not finite where there is no
+/// inverse.
+inline double squeeze(const DMat3& linear) { return largest_entry(linear) * largest_entry(glm::inverse(linear)); }
+
+inline std::string squeeze_problem(const DMat3& linear) {
+    if (9 * squeeze(linear) < 1e4) return {};
+    return "the instance's transform has no inverse, or squeezes the group by more than 1 : 1000";
+}
+
+/// What an instance's transform cannot be, wherever the instance is.
+inline std::string instance_problem(const DMat4& to_world) {
+    for (int column = 0; column < 4; ++column)
+        if (std::string problem = position_problem(DVec3(to_world[column]), "the instance's transform");
+            !problem.empty())
+            return problem;
+    if (!is_affine(to_world)) return "the instance's transform is not affine";
+    return squeeze_problem(DMat3(to_world));
+}
+
 template <class Material>
 void check_instances(const SceneDescription<Material>& scene) {
     for (const auto& group : scene.groups) {
@@ -188,11 +228,8 @@ void check_instances(const SceneDescription<Material>& scene) {
     }
     for (const auto& instance : scene.instances) {
         if (instance.group >= scene.groups.size()) fail(instance.origin, "the instance's group does not exist");
-        for (int column = 0; column < 4; ++column)
-            check_position(DVec3(instance.to_world[column]), instance.origin, "the instance's transform");
-        const DMat4& m = instance.to_world;
-        if (m[0].w != 0 || m[1].w != 0 || m[2].w != 0 || m[3].w != 1)
-            fail(instance.origin, "the instance's transform is not affine");
+        if (const std::string problem = instance_problem(instance.to_world); !problem.empty())
+            fail(instance.origin, problem);
     }
 }
 
@@ -200,7 +237,7 @@ template <class Material>
 void check(const SceneDescription<Material>& scene) {
     check(scene.camera);
     check(scene.film);
-    std::vector<int> depths(scene.materials.size(), -1);
+    std::vector<int> depths(scene.materials.size(), unknown_depth);
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         const auto& material = scene.materials[i];
         std::string problem;
