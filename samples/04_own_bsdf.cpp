@@ -4,7 +4,6 @@
 #include <lightswitch/lightswitch.hpp>
 
 #include <cstdio>
-#include <variant>
 
 namespace ls = lightswitch;
 
@@ -37,7 +36,7 @@ private:
 
 int main() try {
     // Two spheres, as bright as each other in the middle, lit from behind the camera: Lambert's on the left.
-    ls::SceneDescription<std::variant<ls::Lambert, Dust>> moons;
+    ls::LibraryDescription moons;
     moons.name = "moons";
     const auto plaster = moons.add(ls::Lambert{ls::Rgb(0.12f)}), dust = moons.add(Dust{ls::Rgb(0.96f)});
     const auto black = moons.add(ls::Lambert{ls::Rgb(0)});

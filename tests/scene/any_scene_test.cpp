@@ -20,7 +20,30 @@ bool becomes(const LibraryDescription& scene) {
     return named && std::holds_alternative<T>(built);
 }
 
+/// A model of one's own.
+struct Soot {
+    static constexpr bool specular = false;
+    BsdfValue evaluate(const Vec3&, const Vec3&, Transport) const { return {}; }
+    Maybe<BsdfSample> sample(const Vec3&, const Vec3&, Transport) const { return {}; }
+    std::string problem() const { return {}; }
+};
+
 }  // namespace
+
+TEST_CASE("any scene: a description takes models of one's own, and so does a scene that has a place for them") {
+    LibraryDescription scene = with(Soot{});
+    scene.add(Lambert{});
+    const auto built = build_scene<Bsdfs<Lambert, Soot>>(scene);
+    CHECK(built.statistics().triangles == 2);
+    CHECK(build_scene<Bsdfs<Textured<Lambert>, Soot>>(scene).statistics().triangles == 2);
+    std::string message;
+    try {
+        build_any(scene);
+    } catch (const Error& error) {
+        message = error.what();
+    }
+    CHECK(message.find("has no place for that surface model") != std::string::npos);
+}
 
 TEST_CASE("any scene: the smallest type that holds everything") {
     CHECK(becomes<DiffuseScene>(with(Lambert{})));
