@@ -4,11 +4,11 @@
 # From the loops over pixels and light paths (Frame::sample_tile, Frame::trace_paths) it follows every direct call inside the
 # program. No instruction met on the way may call or jump through a register or memory (the stubs through which a program calls
 # shared libraries are not followed: Embree is one of those), and no class of the library may have a virtual function table,
-# except its exception.
+# except its exception and what descriptions hold.
 set -u
 program=${1:?usage: hot_path.sh PROGRAM}
 
-tables=$(nm -C "$program" | grep -E ' vtable for lightswitch::' | grep -vE ' vtable for lightswitch::Error$')
+tables=$(nm -C "$program" | grep -E ' vtable for lightswitch::' | grep -vE ' vtable for lightswitch::(Error$|(AnyMaterial|Source)::Model<)')
 if [ -n "$tables" ]; then
   echo "virtual function tables:"
   echo "$tables"
