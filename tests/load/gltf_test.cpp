@@ -305,7 +305,7 @@ TEST_CASE("samplers and the transform of texture coordinates") {
                    uv)
             .base_color;
     };
-    const Rgb red(1, 0, 0), green(0, 1, 0), blue(0, 0, 1), white(1);
+    const Rgb red(1, 0, 0), green(0, 1, 0), blue(0, 0, 1);
     CHECK(color(R"("magFilter": 9728)", "", {0.45f, 0.45f}) == red);
     CHECK(color("", "", {0.45f, 0.45f}) != red);
     CHECK(color(R"("magFilter": 9728)", "", {1.3f, 0.3f}) == red);
