@@ -3,6 +3,7 @@
 # breaks it.
 set -u
 rule=${1:?usage: rules.sh RULE DIRECTORY}
+documents=$(cd "$(dirname "$0")/../../docs" && pwd) || exit 2
 cd "${2:?usage: rules.sh RULE DIRECTORY}" || exit 2
 
 # Succeeds when exactly one header has an #include that matches regex $1: the header $2, if given.
@@ -22,19 +23,24 @@ nothing() {
 
 # Which folder stands on which: an include goes to its own folder or to one on a lower floor.
 floors() {
-  grep -rE --include='*.hpp' '^#include <lightswitch/' . | awk -F'[/:<>]' '
+  # The picture of the floors in docs/design.md, top first.
+  local picture
+  picture=$(awk '/^## Floors$/ { here = 1 } here && /^```/ { if (inside) exit; inside = 1; next } inside' "$documents/design.md")
+  [ -n "$picture" ] || { echo "there is no picture of the floors in $documents/design.md"; exit 1; }
+  grep -rE --include='*.hpp' '^#include <lightswitch/' . | picture=$picture awk -F'[/:<>]' '
     BEGIN {
-      number = split("core | geometry | bsdf embree film light | camera texture | scene | compare load render | method | verify | report", names, " ")
-      level = 1
-      for (i = 1; i <= number; ++i)
-        if (names[i] == "|") ++level
-        else floor[names[i]] = level
+      number = split(ENVIRON["picture"], lines, "\n")
+      for (i = 1; i <= number; ++i) {
+        split(lines[i], parts, "#")  # what follows is a comment
+        count = split(parts[1], names, " ")
+        for (j = 1; j <= count; ++j) floor[names[j]] = number - i + 1
+      }
     }
     $2 !~ /[.]hpp$/ {  # a header in a folder
       from = $2; to = $6
-      if (!(from in floor)) print "./" from " has no floor: give it one in tests/structure/rules.sh"
+      if (!(from in floor)) print "./" from " has no floor: give it one in docs/design.md"
       else if (from != to && !(floor[to] < floor[from])) print $0
-    }' | sort -u | nothing 'includes that climb, or go sideways (core at the bottom; see floors in tests/structure/rules.sh):'
+    }' | sort -u | nothing 'includes that climb, or go sideways (core at the bottom; see the floors in docs/design.md):'
 }
 
 [ "$(find . -name "*.[ch]pp" | wc -l)" -gt 0 ] || { echo "no C++ files in $PWD"; exit 2; }
