@@ -3,14 +3,14 @@
 # seconds of processor time, peak memory in MB, and kilobytes of machine code. The compiler is c++, and the options are those
 # of the g++ line in the README, unless others are given.
 #
-# Exit status 1 when a pair of method and scene type has more code than its limit: unlike seconds, that does not depend on
-# the machine.
+# Exit status 1 when a pair of method and scene type has more code than the limit of its scene type, which is a little more
+# than the largest had with GCC 12 when it was set: unlike seconds, that does not depend on the machine.
 set -eu
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 compiler=${1:-c++}
 options=("${@:2}")
 [ ${#options[@]} -gt 0 ] || options=(-std=c++20 -O3 -DLIGHTSWITCH_HAS_EXR=1)
-limit_kb=250
+declare -A limit_kb=([DiffuseScene]=150 [FullScene]=300 [TexturedScene]=380)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -30,6 +30,8 @@ PYTHON
 
 printf '%-34s %8s %8s %8s\n' '' 'seconds' 'MB' 'kB'
 measure 'samples/01_minimal.cpp' samples/01_minimal.cpp
+{ echo '#include <lightswitch/compiled.hpp>' && cat samples/01_minimal.cpp; } > "$work/compiled.cpp"
+measure 'the same with compiled.hpp' "$work/compiled.cpp"
 measure 'samples/02_switch.cpp' samples/02_switch.cpp
 echo '#include <lightswitch/lightswitch.hpp>' > "$work/headers.cpp"
 measure 'lightswitch.hpp alone' "$work/headers.cpp"
@@ -42,7 +44,7 @@ namespace ls = lightswitch;
 ls::Image f(const ls::$scene& scene) { return ls::render(scene, ls::$method{}); }
 CPP
     measure "$scene, $method" "$work/pair.cpp"
-    [ "$kb" -le "$limit_kb" ] || { echo "  above the limit of $limit_kb kB" && over=1; }
+    [ "$kb" -le "${limit_kb[$scene]}" ] || { echo "  above the limit of ${limit_kb[$scene]} kB" && over=1; }
   done
 done
 exit $over

@@ -1,0 +1,9 @@
+#include "fuzz.hpp"
+
+#include <lightswitch/load/spectrum.hpp>
+
+using namespace lightswitch;
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    return test::read_bytes(data, size, "a.spd", [](const auto& path) { load_spectrum(path); });
+}
