@@ -369,7 +369,7 @@ TEST_CASE("files that are not there are looked for once, and not without end") {
     CHECK(contains(timed(used), "there is no image \"none.png\": the material does without it (2000 times)"));
     const Folder other;
     const auto path = other.write("a.obj", different + std::string(a_square) + std::string(face));
-    CHECK(contains(message_of([&] { load_obj_scene(path); }), "names more than 1000 material files"));
+    CHECK(contains(message_of([&] { load_obj_scene(path); }), "asks for more than 1000 searches for material files"));
 }
 
 TEST_CASE("the textures of a scene have an end") {

@@ -73,6 +73,16 @@ TEST_CASE("any scene: the smallest type that holds everything") {
     CHECK(becomes<FullScene>(unused));
 }
 
+TEST_CASE("any scene: the first of any types that can hold it") {
+    using Types = std::variant<DiffuseScene, TexturedScene, FullScene>;
+    CHECK(std::holds_alternative<DiffuseScene>(build_any<Types>(with(Lambert{}))));
+    CHECK(std::holds_alternative<TexturedScene>(build_any<Types>(with(Plastic{}))));
+    CHECK(std::holds_alternative<TexturedScene>(build_any<Types>(with(Principled{.anisotropic = 0.5f}))));
+    LibraryDescription layered = with(Lambert{});
+    layered.shapes[0].material = layered.add(Mask{0, Texture(Rgb(0.5f))});
+    CHECK(std::holds_alternative<TexturedScene>(build_any<Types>(layered)));
+}
+
 TEST_CASE("any scene: names begin with the word that the program shows") {
     LibraryDescription scene = with(Lambert{});
     CHECK(scene_type_name(build_any(scene)).substr(0, 8) == "diffuse:");

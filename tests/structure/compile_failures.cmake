@@ -19,6 +19,7 @@ set(no_surface_model "(RequireBsdf<Chalk>.*a surface model needs|a surface model
 set(no_scene "RequireScene<int>.*what is rendered must be a scene|what is rendered must be a scene.*RequireScene<int>")
 expect_compile_failure(own_bsdf_specular own_types.cpp 5 "${no_surface_model}.*B::specular")
 expect_compile_failure(own_bsdf_problem own_types.cpp 6 "${no_surface_model}.*bsdf\\.problem\\(\\)")
+expect_compile_failure(own_bsdf_described own_types.cpp 18 "${no_surface_model}.*bsdf\\.problem\\(\\)")
 expect_compile_failure(own_pixels_ray own_types.cpp 7 "frame\\.pixels needs a function")
 expect_compile_failure(own_pixels_value own_types.cpp 8 "frame\\.pixels needs a function")
 expect_compile_failure(own_pixels_mutable own_types.cpp 9 "frame\\.pixels needs a function.*must not be .mutable")

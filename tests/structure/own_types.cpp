@@ -119,6 +119,14 @@ struct Pinhole {
 ls::Image image(const ls::DiffuseScene& scene) {
     return ls::render(scene.with_camera(Pinhole{}), RIGHT_OR_WRONG(ls::PathTracerNee, ls::Bdpt){});
 }
+#elif CASE == 18
+struct Chalk {
+    static constexpr bool specular = false;
+    UNLESS_FORGOTTEN(std::string problem() const { return {}; })
+    ls::BsdfValue evaluate(const ls::Vec3&, const ls::Vec3&, ls::Transport) const { return {}; }
+    ls::Maybe<ls::BsdfSample> sample(const ls::Vec3&, const ls::Vec3&, ls::Transport) const { return {}; }
+};
+std::size_t add(ls::LibraryDescription& description) { return description.add(Chalk{}); }
 #else
-#error "CASE must be 1 to 17"
+#error "CASE must be 1 to 18"
 #endif

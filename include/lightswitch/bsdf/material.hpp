@@ -67,9 +67,9 @@ bool has_dirac_lobe(const M& material) {
 template <class... M>
 struct PlacedPoint : SurfacePoint {
     Vec2 uv{0};
-    Vec3 tangent{0};  ///< where u grows, any length; 0 where nothing asks for it
-    /// The probability with which layers, asked for another path, would lead from here to a model that is not specular.
-    float presence = 1;
+    Vec3 tangent{0};                             ///< where u grows, any length; 0 where nothing asks for it
+    MaterialIndex outermost;                     ///< the material that the surface has, over all layers
+    bool behind = false;                         ///< whether its front is not what the ray met
     std::variant<Mapped<model_of<M>>...> model;  ///< by the kind of the material
 
     [[gnu::always_inline]] Basis shading_frame() const {

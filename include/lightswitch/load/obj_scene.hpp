@@ -91,7 +91,7 @@ private:
     void read_library(const ObjContents::Name& library) {
         const auto find = [&](std::string_view name) {
             // Each may go through whole folders.
-            if (++searches_ > 1000) fail(place(library.line), "names more than 1000 material files");
+            if (++searches_ > 1000) fail(place(library.line), "asks for more than 1000 searches for material files");
             return find_loosely(name, {path_.parent_path()});
         };
         if (const auto file = find(library.text)) return read_file(*file);

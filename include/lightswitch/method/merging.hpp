@@ -19,12 +19,11 @@ struct Photon {
 
 /// What a light path leaves at its vertex. Where layers decide by chance what is there, those that are left stand for
 /// the others, too: the camera path that gathers them draws its own chance.
-inline Photon photon_at(const auto& y) {
+inline Photon photon_at(const auto& scene, const auto& y) {
     const float true_cosine = std::abs(dot(y.point.normal, y.point.wo));
     const float cosine = std::abs(dot(y.point.shading_normal, y.point.wo));
-    Rgb power = y.throughput * (cosine / true_cosine);
-    if constexpr (requires { y.point.presence; }) power /= y.point.presence;
-    return {y.point.position, y.point.wo, power, y.edges};
+    const Rgb power = y.throughput * (cosine / true_cosine);
+    return {y.point.position, y.point.wo, power / scene.presence(y.point), y.edges};
 }
 
 /// The BSDF between the light that a photon brought and the direction that the camera path came from, with its

@@ -58,7 +58,7 @@ struct PhotonMapping {
         frame.paths(light_paths, [&](std::uint64_t path, auto& sampler, auto&) {
             state.paths.start(path);
             trace_light_subpath(scene, sampler, {{max_depth, rr_depth}}, {},
-                                [&](const auto& y) { state.paths.push(path, photon_at(y)); });
+                                [&](const auto& y) { state.paths.push(path, photon_at(scene, y)); });
         });
         if (frame.stopped()) return;
         state.paths.list(state.photons, frame.executor(), [](const Photon& photon) { return photon; });

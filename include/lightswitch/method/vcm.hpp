@@ -64,8 +64,8 @@ struct Vcm {
         });
         if (frame.stopped()) return;
         if (r > 0) {
-            state.paths.list(state.photons, frame.executor(), [](const PathVertex<Point>& y) {
-                return WeighedPhoton{photon_at(y), y.weights.last, y.weights.merges};
+            state.paths.list(state.photons, frame.executor(), [&](const PathVertex<Point>& y) {
+                return WeighedPhoton{photon_at(scene, y), y.weights.last, y.weights.merges};
             });
             state.map.build(state.photons, r, frame.executor());
         }

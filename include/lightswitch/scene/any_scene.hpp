@@ -5,9 +5,11 @@
 #include <lightswitch/scene/build.hpp>
 #include <lightswitch/scene/library.hpp>
 
+#include <algorithm>
 #include <optional>
 #include <string_view>
 #include <type_traits>
+#include <typeinfo>
 #include <utility>
 #include <variant>
 
@@ -43,10 +45,9 @@ class Capacity;
 template <class... B, class... L, class... C>
 class Capacity<Scene<Bsdfs<B...>, Lights<L...>, Cameras<C...>>> {
 public:
-    /// Of scene types without placed materials.
     static bool holds(const LibraryDescription& scene) {
         for (const auto& material : scene.materials)
-            if (material.layer || !material.bsdf.isotropic() || !(material.bsdf.template get<B>() || ...)) return false;
+            if (material.layer ? !takes_layers : !holds_model(material.bsdf)) return false;
         for (const auto& placed : scene.sources)
             if (!((placed.source.light_type() == typeid(L)) || ...)) return false;
         if (!(C::serves(scene.camera) || ...)) return false;
@@ -62,11 +63,15 @@ public:
         return std::all_of(scene.shapes.begin(), scene.shapes.end(), holds_shape) &&
                std::all_of(scene.groups.begin(), scene.groups.end(), holds_group);
     }
+
+private:
+    static constexpr bool takes_layers = (PlacedMaterial<B> || ...);
+
+    static bool holds_model(const AnyMaterial& material) {
+        if constexpr (takes_layers) return (material.get<B>() || ...) || (material.get<model_of<B>>() || ...);
+        else return material.isotropic() && (material.get<B>() || ...);
+    }
 };
-
-}  // namespace detail
-
-namespace detail {
 
 template <class SceneType>
 struct BuildAs;

@@ -6,7 +6,9 @@
 #include <lightswitch/scene/check.hpp>
 #include <lightswitch/scene/scene_data.hpp>
 
+#include <concepts>
 #include <optional>
+#include <string_view>
 #include <type_traits>
 
 namespace lightswitch::detail {
@@ -45,7 +47,7 @@ private:
         const auto add_one = [&](const auto& bsdf) { return add(bsdf, material.two_sided, material.origin); };
         if constexpr (requires { std::visit(add_one, material.bsdf); })
             indices_[number] = std::visit(add_one, material.bsdf);
-        else if constexpr (requires { material.bsdf.model_name(); })
+        else if constexpr (std::same_as<decltype(material.bsdf), AnyMaterial>)
             indices_[number] = add_any(material.bsdf, material.two_sided, material.origin);
         else indices_[number] = add_one(material.bsdf);
     }
@@ -66,8 +68,7 @@ private:
         count_ways(material.origin);
     }
 
-    /// Finds whether the latest layer is certain. If it is not, `presence` goes all ways down from it, where photons
-    /// are left.
+    /// Finds whether the latest layer is certain. If it is not, `presence` goes all ways down from it, for photons.
     void count_ways(const Origin& origin) {
         constexpr double most = 65536;
         LayerRecord& layer = data_.layers.back();
@@ -110,12 +111,14 @@ private:
         };
         (try_as(std::type_identity<B>()), ...);
         if constexpr (placed) (try_as(std::type_identity<model_of<B>>()), ...);
-        if (!index) no_place(origin);
+        if (!index) no_place(material.model_name(), origin);
         return *index;
     }
 
-    [[noreturn]] static void no_place(const Origin& origin) {
-        fail(origin, "this scene type has no place for that surface model; add it to the scene's Bsdfs<...>");
+    [[noreturn]] static void no_place(std::string_view name, const Origin& origin) {
+        fail(origin, "this scene type has no place for that surface model" +
+                         (name.empty() ? std::string() : " (" + std::string(name) + ")") +
+                         "; add it to the scene's Bsdfs<...>");
     }
 
     template <Material M>
@@ -132,7 +135,7 @@ private:
         constexpr std::size_t kind =
             itself < sizeof...(B) ? itself : first_of<std::is_constructible_v<B, const M&>...>();
         if constexpr (kind == sizeof...(B)) {
-            no_place(origin);
+            no_place(AnyMaterial(material).model_name(), origin);
         } else {
             auto& list = std::get<kind>(data_.bsdfs);
             check_count(list.size(), MaterialIndex::max_position, origin, "surface models");

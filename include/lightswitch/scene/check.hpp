@@ -132,6 +132,7 @@ int depth_over(const SceneDescription<Material>& scene, const MaterialLayer& lay
 /// used.
 template <class Material>
 bool any_below(const SceneDescription<Material>& scene, std::size_t number, const auto& found) {
+    if (number < scene.materials.size() && !scene.materials[number].layer) return found(scene.materials[number]);
     std::vector<bool> seen(scene.materials.size(), false);
     std::vector<std::size_t> pending{number};
     while (!pending.empty()) {

@@ -22,7 +22,8 @@
 
 namespace lightswitch {
 
-/// A scene whose surfaces are described by `Material`: one BSDF type, or a `std::variant` of several.
+/// A scene whose surfaces are described by `Material`: `AnyMaterial` (see `LibraryDescription`), one BSDF type, or a
+/// `std::variant` of several.
 template <class Material>
 struct SceneDescription {
     struct Shape {
@@ -83,6 +84,15 @@ struct SceneDescription {
     void add(std::variant<Mesh, Sphere> geometry, std::size_t material, std::optional<Rgb> emission = {},
              Origin origin = {}) {
         shapes.push_back({std::move(geometry), material, emission, std::move(origin)});
+    }
+    /// What is neither a material nor anything else that a scene has: says what a surface model lacks.
+    template <class M>
+    requires(!std::convertible_to<M, Material> && !std::convertible_to<M, MaterialLayer> &&
+             !std::convertible_to<M, std::variant<Mesh, Sphere>> && !Light<M> && !LightSource<M>) std::size_t
+        add(const M&, Origin = {}) {
+        static_assert(detail::RequireMaterial<M>::value);
+        static_assert(!lightswitch::Material<M>, "the materials of this description are of other types");
+        return 0;
     }
     /// A light that is no source: says what it lacks.
     template <Light L>

@@ -212,11 +212,9 @@ template <class Point>
     point.tangent = Vec3(0);
     const Vec3 normal_before = point.shading_normal;
     MappedNormal map;
-    point.presence = 1;
-    if (point.material.kind() == kinds) {
-        point.presence = presence(data, point.material, point.uv, dot(point.wo, normal_before) < 0);
-        if (!resolve_layers<kinds>(data, point.uv, point, map, tangents)) return false;
-    }
+    point.outermost = point.material;
+    point.behind = dot(point.wo, normal_before) < 0;
+    if (point.material.kind() == kinds && !resolve_layers<kinds>(data, point.uv, point, map, tangents)) return false;
     dispatch<kinds>(point.material.kind(), [&](auto kind) {
         const auto& material = std::get<kind>(data.bsdfs)[point.material.position()];
         using Model = model_of<std::remove_cvref_t<decltype(material)>>;

@@ -126,6 +126,13 @@ public:
             });
     }
 
+    /// The probability with which layers lead other paths that come here to a model that is not specular; 1 without
+    /// layers.
+    float presence([[maybe_unused]] const Point& point) const {
+        if constexpr (placed) return detail::presence(data(), point.outermost, point.uv, point.behind);
+        else return 1;
+    }
+
     /// Whether the scene has a material some lobe of which is a Dirac distribution: a mirror, clear glass, smooth
     /// plastic.
     bool has_specular() const { return detail::any_dirac_lobe(data().bsdfs); }
