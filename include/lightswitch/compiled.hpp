@@ -8,8 +8,8 @@
 //     LIGHTSWITCH_COMPILE_METHOD(PathTracerNee)
 //
 // with a line for each method below, or some do so for some of them each. What is missing is an error of the linker;
-// scenes and methods of one's own are compiled where they are used, as ever. In CMake, the target lightswitch::compiled is such
-// a place, where this project is a part of another (add_subdirectory, FetchContent).
+// scenes and methods of one's own are compiled where they are used, as ever. In CMake, the target lightswitch::compiled
+// is such a place, where this project is a part of another (add_subdirectory, FetchContent).
 
 #include <lightswitch/method/any_method.hpp>
 #include <lightswitch/render/render.hpp>

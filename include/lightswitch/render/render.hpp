@@ -103,8 +103,8 @@ inline void check(const Budget& budget) {
 }  // namespace detail
 
 /// A render that can be continued: what it has accumulated is a pure function of (scene, method, seed, sampling, number
-/// of iterations), whatever the threads and however often it was stopped in between. The scene must outlive it. It can be
-/// moved, not copied.
+/// of iterations), whatever the threads and however often it was stopped in between. The scene must outlive it. It can
+/// be moved, not copied.
 ///
 /// The members that lead to the code of a method are outside the class, so that `compiled.hpp` can leave them to
 /// another file.

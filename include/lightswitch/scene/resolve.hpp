@@ -117,6 +117,13 @@ float presence(const Data& data, MaterialIndex material, const Vec2& uv, bool be
     }
 }
 
+/// The same at a point; 1 where a scene type has no layers.
+float presence(const auto&, const SurfacePoint&) { return 1; }
+template <class... M>
+float presence(const auto& data, const PlacedPoint<M...>& point) {
+    return presence(data, point.outermost, point.uv, point.behind);
+}
+
 /// Goes down the layers over a point until a surface model is reached, which becomes the point's material; false where
 /// the surface is not there. `tangents()` is asked when a layer needs them; `map` says what maps have done to the
 /// shading normal, all but the normal before, for which the frame must be known.

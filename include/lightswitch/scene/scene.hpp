@@ -126,15 +126,10 @@ public:
             });
     }
 
-    /// The probability with which layers lead other paths that come here to a model that is not specular; 1 without
-    /// layers.
-    float presence([[maybe_unused]] const Point& point) const {
-        if constexpr (placed) return detail::presence(data(), point.outermost, point.uv, point.behind);
-        else return 1;
-    }
+    /// How probable it is that layers lead a path that comes to the point to a model that is not specular.
+    float presence(const Point& point) const { return detail::presence(data(), point); }
 
-    /// Whether the scene has a material some lobe of which is a Dirac distribution: a mirror, clear glass, smooth
-    /// plastic.
+    /// Whether a material has a lobe that is a Dirac distribution: a mirror, clear glass, smooth plastic.
     bool has_specular() const { return detail::any_dirac_lobe(data().bsdfs); }
 
     // --- lights
