@@ -1,9 +1,9 @@
 // furnace: what white surfaces do to the light of a white sky: the fraction that comes back or gets through, by model,
-// roughness and angle. Models of single scattering lose what facets would reflect twice; none may gain, but for two that
-// do so where they come from.
+// roughness and angle. Models of single scattering lose what facets would reflect twice; none may gain, but for two
+// that do so where they come from.
 //
-// Printed as the table of docs/conventions.md. Exit status 1 when a value of any other model is above 1 by more than its
-// standard error allows.
+// Printed as the table of docs/conventions.md. Exit status 1 when a value of any other model is above 1 by more than
+// its standard error allows.
 
 #include <lightswitch/scene/library.hpp>
 
