@@ -10,7 +10,7 @@ using namespace lightswitch::test;
 
 namespace {
 
-/// The error of a whole file; it must come within a second.
+/// The error of a whole file; it must come soon, on slow machines, too.
 std::string error_of(const std::string& text) {
     const Folder folder;
     folder.write("triangle.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
@@ -20,7 +20,7 @@ std::string error_of(const std::string& text) {
     const auto path = folder.write("room.xml", text);
     const auto start = std::chrono::steady_clock::now();
     const std::string message = message_of([&] { load_mitsuba(path); });
-    CHECK_MESSAGE(std::chrono::steady_clock::now() - start < std::chrono::seconds(1), message);
+    CHECK_MESSAGE(std::chrono::steady_clock::now() - start < std::chrono::seconds(10), message);
     CHECK_MESSAGE((message == "no error" || contains(message, "room.xml")), message);
     return message;
 }

@@ -52,7 +52,9 @@ private:
             if (!normals) {
                 texels.push_back(fraction());
             } else {
-                const Vec3 n = normalize(Vec3(fraction() - 0.5f, fraction() - 0.5f, 0.6f)) * 0.5f + 0.5f;
+                // One after the other: compilers differ in the order of a call's arguments.
+                const float y = fraction() - 0.5f, x = fraction() - 0.5f;
+                const Vec3 n = normalize(Vec3(x, y, 0.6f)) * 0.5f + 0.5f;
                 texels.insert(texels.end(), {n.x, n.y, n.z});
             }
         }
@@ -95,7 +97,7 @@ private:
                 return add(ModifiedPhong{.exponent = float(number(2, 30)),
                                          .diffuse_reflectance = color(0.1, 0.5),
                                          .specular_reflectance = color(0.1, 0.2)},
-                           "specular_reflectance");
+                           "diffuse_reflectance");
             case 7: {
                 const float u = alpha(), v = alpha();
                 return add(Ward{.alpha_u = u,
@@ -161,8 +163,10 @@ inline LibraryDescription random_surfaces(std::uint32_t seed) {
         return m;
     };
     scene.add(quad({-3, -1, 3}, {3, -1, 3}, {3, -1, -3}, {-3, -1, -3}), materials.any(false));
-    scene.add(Sphere{{number(-1.5, 1.5), number(-0.6, 0.6), number(-1.5, 1.5)}, number(0.3, 0.8)}, materials.any());
-    scene.add(cube(place(0.5)), materials.any());
+    const std::size_t of_ball = materials.any();
+    scene.add(Sphere{{number(-1.5, 1.5), number(-0.6, 0.6), number(-1.5, 1.5)}, number(0.3, 0.8)}, of_ball);
+    const std::size_t of_block = materials.any();
+    scene.add(cube(place(0.5)), of_block);
     LibraryDescription::Group group;
     group.shapes.push_back(
         {.geometry = stock::torus_knot(60, 8, 0.2), .material = materials.any(), .emission = {}, .origin = {}});

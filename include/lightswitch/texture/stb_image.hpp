@@ -142,7 +142,9 @@ inline void* stb_allocate(void* old, std::size_t size) {
 #define stbi_zlib_decode_noheader_malloc lightswitch_stbi_zlib_decode_noheader_malloc
 #define stbi_zlib_decode_noheader_buffer lightswitch_stbi_zlib_decode_noheader_buffer
 // In damaged JPEG files its integers overflow, which nothing depends on: they are to wrap.
-#if defined(__GNUC__) && !defined(__clang__)
+#if defined(__clang__)
+#pragma clang attribute push(__attribute__((no_sanitize("signed-integer-overflow"))), apply_to = function)
+#elif defined(__GNUC__)
 #pragma GCC push_options
 #pragma GCC optimize("wrapv")
 #endif
@@ -166,7 +168,9 @@ namespace lightswitch::detail::stb_read {
 #if defined(__GNUC__)
 #pragma GCC diagnostic pop
 #endif
-#if defined(__GNUC__) && !defined(__clang__)
+#if defined(__clang__)
+#pragma clang attribute pop
+#elif defined(__GNUC__)
 #pragma GCC pop_options
 #endif
 #undef stbi_load_from_memory
