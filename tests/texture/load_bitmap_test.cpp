@@ -251,6 +251,8 @@ TEST_CASE("a JPEG's table of codes may not exceed the values of a byte") {
         // Behind the first scan, too, and after bytes that are no marker.
         CHECK(contains(refused(bytes + changed.substr(table, 40)), "too many codes") == (length > 0));
         CHECK(contains(refused(bytes.substr(0, 2) + "x" + changed.substr(table)), "too many codes") == (length > 0));
+        // Found by tests/fuzz: before the first marker there may be more.
+        CHECK(contains(refused("\xff\xff" + changed), "too many codes") == (length > 0));
     }
 }
 

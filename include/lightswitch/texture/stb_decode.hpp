@@ -148,9 +148,12 @@ inline Bitmap decode_stb(std::string_view bytes, const std::string& file, TexelE
         fail(where, std::string("is damaged, or no image that is read (PNG, JPEG, BMP, TGA, EXR, HDR, PFM): ") +
                         (reason ? reason : "unknown error"));
     };
-    const bool png = bytes.starts_with("\x89PNG\r\n\x1a\n"), jpeg = bytes.starts_with("\xff\xd8");
+    const bool png = bytes.starts_with("\x89PNG\r\n\x1a\n");
+    // Its first marker may be filled up in front.
+    const std::size_t filled = std::min(bytes.find_first_not_of('\xff'), bytes.size());
+    const bool jpeg = filled > 0 && bytes.substr(filled).starts_with('\xd8');
     if (png) check_png(bytes, file);
-    if (jpeg) check_jpeg(bytes, file);
+    if (jpeg) check_jpeg(bytes.substr(filled - 1), file);
 
     stb_largest_block = 1 << 16;  // the header takes no more
     int width = 0, height = 0, channels = 0;
