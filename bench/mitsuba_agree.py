@@ -4,8 +4,8 @@
     python3 -m pip install mitsuba numpy scipy   # Mitsuba's LLVM mode also needs libLLVM (Debian: libllvm19)
     bench/mitsuba_agree.py [OPTION...] PROGRAM SCENE.xml [SCENE.xml ...]
 
-PROGRAM is the program lightswitch. Files are rendered as they are but for the film's size, in a copy beside them that is
-removed again; with paths of at most DEPTH as `max_depth` counts them. Each renderer makes some images with different
+PROGRAM is the program lightswitch. Files are rendered as they are but for the film's size, in a copy beside them that
+is removed again; with paths of at most DEPTH as `max_depth` counts them. Each renderer makes some images with different
 seeds; Welch's test compares each of 8 x 8 tiles, per channel. `p` is the smallest of a scene, times their number: below
 0.001 the renderers differ there, or have noise of outliers that so few images do not show. `mean` is ours over theirs,
 with its standard error. Files that one of the two does not open are listed and not counted."""
@@ -31,8 +31,17 @@ def read_pfm(path):
     return values.reshape(height, width, 3 if kind == "PF" else 1)[::-1].astype(np.float64)
 
 
+def included(text, folder, depth=0):
+    """The text with the contents of the files that it includes."""
+    def contents(element):
+        with open(os.path.join(folder, element.group(1)), errors="replace") as file:
+            inside = re.sub(r"<\?xml.*?\?>|</?scene\b[^>]*>", "", file.read(), flags=re.S)
+        return included(inside, folder, depth + 1) if depth < 8 else inside
+    return re.sub(r'<include\s+filename="([^"$]*)"\s*/>', contents, text)
+
+
 def sized(text, size):
-    """The file's text with films of that size."""
+    """The text with films of that size."""
     def resize(film):
         inside = re.sub(r'<integer\s+name="(?:width|height|crop_\w+)"[^>]*/>', "", film.group(2))
         return "%s<integer name=\"width\" value=\"%d\"/><integer name=\"height\" value=\"%d\"/>%s" % (
@@ -59,7 +68,7 @@ def ours(options, scene, seed):
 
 def compare(options, path):
     with open(path, errors="replace") as file:
-        text = sized(file.read(), options.size)
+        text = sized(included(file.read(), os.path.dirname(path) or "."), options.size)
     handle, copy = tempfile.mkstemp(".xml", ".agree-", os.path.dirname(path) or ".")
     try:
         with os.fdopen(handle, "w") as file:
