@@ -51,7 +51,7 @@ for reader in "${readers[@]}"; do
   mkdir -p "$corpus"
   seeds "$reader" | while read -r file; do cp "$file" "$corpus/"; done
   log=$build/$reader.log
-  if "$build/tests/fuzz/fuzz_$reader" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=16384 \
+  if "$build/tests/fuzz/fuzz_$reader" -seed=1 -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=16384 \
       -print_final_stats=1 -artifact_prefix="$build/findings/$reader-" "$corpus" > "$log" 2>&1; then
     passed=$((passed + 1))
     echo "$reader: $(awk '/number_of_executed_units/ { print $2 }' "$log") inputs, nothing found"
