@@ -1,4 +1,5 @@
 #include "support/errors.hpp"
+#include "support/folder.hpp"
 #include "support/relative.hpp"
 
 #include <lightswitch/film/image_io.hpp>
@@ -10,7 +11,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -21,27 +21,12 @@
 #endif
 
 using namespace lightswitch;
+using lightswitch::test::Folder;
 using lightswitch::test::message_of;
 using test::relative;
 namespace fs = std::filesystem;
 
 namespace {
-
-/// A directory of this test's own, removed with everything in it.
-struct Scratch {
-    fs::path path;
-    Scratch() {
-        std::random_device random;
-        path = fs::temp_directory_path() / ("lightswitch-image-io-" + std::to_string(random()));
-        fs::create_directory(path);
-    }
-    ~Scratch() { fs::remove_all(path); }
-    Scratch(const Scratch&) = delete;
-    Scratch& operator=(const Scratch&) = delete;
-    std::size_t files() const {
-        return static_cast<std::size_t>(std::distance(fs::directory_iterator(path), fs::directory_iterator()));
-    }
-};
 
 /// A xorshift generator (Marsaglia 2003): the same cases on every machine.
 struct Random {
@@ -369,8 +354,8 @@ TEST_CASE("exr: damaged files give an image or an error") {
 }
 
 TEST_CASE("exr: layers, beside the image") {
-    const Scratch scratch;
-    const fs::path path = scratch.path / "a.exr";
+    const Folder scratch;
+    const fs::path path = scratch.path() / "a.exr";
     Image image = test_image(9, 20, true);
     image.metadata = {{"scene", "room.xml"}};
     Image other(9, 20), third(9, 20);
@@ -397,10 +382,10 @@ TEST_CASE("exr: layers, beside the image") {
 }
 
 TEST_CASE("exr: layers that do not fit, and files that have none") {
-    const Scratch scratch;
+    const Folder scratch;
     const Image image(4, 3);
     const auto refusal = [&](const std::vector<Layer>& layers) {
-        return message_of([&] { save_layers(scratch.path / "a.exr", image, layers); });
+        return message_of([&] { save_layers(scratch.path() / "a.exr", image, layers); });
     };
     CHECK(contains(refusal({{"", "RGB", image}}), "a.exr: the layer '' needs another name"));
     CHECK(contains(refusal({{std::string(201, 'n'), "I", image}}), "needs another name"));
@@ -408,21 +393,21 @@ TEST_CASE("exr: layers that do not fit, and files that have none") {
     CHECK(contains(refusal({{"depth", "RGBA", image}}), "one to three channels"));
     CHECK(contains(refusal({{"depth", "Z", Image(3, 4)}}), "the layer 'depth' has not the size of the image"));
     CHECK(contains(refusal({{"a", "Z", image}, {"a", "YZ", image}}), "the channel a.Z twice"));
-    CHECK(scratch.files() == 0);
-    save(scratch.path / "b.exr", image);
-    CHECK(contains(message_of([&] { load_layer(scratch.path / "b.exr", "depth"); }),
+    CHECK(scratch.files().size() == 0);
+    save(scratch.path() / "b.exr", image);
+    CHECK(contains(message_of([&] { load_layer(scratch.path() / "b.exr", "depth"); }),
                    "b.exr: has no layer 'depth' (it has: B, G, R)"));
-    CHECK(contains(message_of([&] { load_layer(scratch.path / "b.exr", ""); }), "has no name"));
+    CHECK(contains(message_of([&] { load_layer(scratch.path() / "b.exr", ""); }), "has no name"));
 }
 
 #else
 
 TEST_CASE("exr: a build without it says so before the work begins") {
-    const Scratch scratch;
-    const fs::path path = scratch.path / "a.exr";
+    const Folder scratch;
+    const fs::path path = scratch.path() / "a.exr";
     CHECK(contains(message_of([&] { check_writable(path); }), "a.exr: this program was built without OpenEXR"));
     CHECK(contains(message_of([&] { save(path, Image(1, 1)); }), "built without OpenEXR"));
-    CHECK(scratch.files() == 0);
+    CHECK(scratch.files().size() == 0);
 }
 
 #endif
@@ -435,110 +420,111 @@ TEST_CASE("pfm and hdr: damaged files give an image or an error") {
 }
 
 TEST_CASE("layers are for .exr files alone") {
-    const Scratch scratch;
+    const Folder scratch;
     const Image image(2, 2);
     CHECK(can_hold_layers("a.EXR"));
     CHECK_FALSE(can_hold_layers("a.pfm"));
-    CHECK(contains(message_of([&] { save_layers(scratch.path / "a.pfm", image, {}); }), "only .exr files hold layers"));
-    CHECK(contains(message_of([&] { load_layer(scratch.path / "a.pfm", "depth"); }), "only .exr files hold layers"));
-    CHECK(scratch.files() == 0);
+    CHECK(
+        contains(message_of([&] { save_layers(scratch.path() / "a.pfm", image, {}); }), "only .exr files hold layers"));
+    CHECK(contains(message_of([&] { load_layer(scratch.path() / "a.pfm", "depth"); }), "only .exr files hold layers"));
+    CHECK(scratch.files().size() == 0);
 }
 
 TEST_CASE("image files: the extension chooses the format, in either case") {
-    const Scratch scratch;
+    const Folder scratch;
     const Image image = test_image(9, 4, true);
-    save(scratch.path / "a.PFM", image);
-    CHECK(same_bits(load_image(scratch.path / "a.PFM"), image));
-    save(scratch.path / "a.Hdr", image);
-    CHECK(load_image(scratch.path / "a.Hdr").width() == 9);
-    save(scratch.path / "a.png", image, {.exposure = -1});
-    CHECK(read_file(scratch.path / "a.png", 10000).starts_with("\x89PNG\r\n\x1a\n"));
-    CHECK(scratch.files() == 3);
-    CHECK(contains(message_of([&] { load_image(scratch.path / "a.png"); }), "PNG is not read"));
-    CHECK(contains(message_of([&] { save(scratch.path / "a.tif", image); }),
+    save(scratch.path() / "a.PFM", image);
+    CHECK(same_bits(load_image(scratch.path() / "a.PFM"), image));
+    save(scratch.path() / "a.Hdr", image);
+    CHECK(load_image(scratch.path() / "a.Hdr").width() == 9);
+    save(scratch.path() / "a.png", image, {.exposure = -1});
+    CHECK(read_file(scratch.path() / "a.png", 10000).starts_with("\x89PNG\r\n\x1a\n"));
+    CHECK(scratch.files().size() == 3);
+    CHECK(contains(message_of([&] { load_image(scratch.path() / "a.png"); }), "PNG is not read"));
+    CHECK(contains(message_of([&] { save(scratch.path() / "a.tif", image); }),
                    "a.tif: has the extension '.tif'; an image is one of .exr, .hdr, .pfm, .png"));
-    CHECK(contains(message_of([&] { save(scratch.path / "a", image); }), "a: has no extension"));
-    CHECK(contains(message_of([&] { save(scratch.path / "b.png", Image()); }), "without pixels"));
-    CHECK(contains(message_of([&] { save(scratch.path / "b.png", image, {.exposure = infinity}); }), "exposure"));
-    CHECK(contains(message_of([&] { load_image(scratch.path / "c.pfm"); }), "c.pfm: no such file"));
-    CHECK(scratch.files() == 3);
+    CHECK(contains(message_of([&] { save(scratch.path() / "a", image); }), "a: has no extension"));
+    CHECK(contains(message_of([&] { save(scratch.path() / "b.png", Image()); }), "without pixels"));
+    CHECK(contains(message_of([&] { save(scratch.path() / "b.png", image, {.exposure = infinity}); }), "exposure"));
+    CHECK(contains(message_of([&] { load_image(scratch.path() / "c.pfm"); }), "c.pfm: no such file"));
+    CHECK(scratch.files().size() == 3);
 }
 
 TEST_CASE("image files: a path that cannot be written is refused beforehand, and nothing is left behind") {
-    const Scratch scratch;
-    fs::create_directory(scratch.path / "dir.pfm");
-    write_file_atomically(scratch.path / "file", "text");
+    const Folder scratch;
+    fs::create_directory(scratch.path() / "dir.pfm");
+    write_file_atomically(scratch.path() / "file", "text");
     const auto check = [&](const fs::path& path, std::string_view part) {
         CAPTURE(path);
         CHECK(contains(message_of([&] { check_writable(path); }), part));
         CHECK(contains(message_of([&] { save(path, Image(1, 1)); }), part));
     };
-    check(scratch.path / "missing" / "a.pfm", "does not exist; create it first");
-    check(scratch.path / "file" / "a.pfm", "is not a directory");
-    check(scratch.path / "dir.pfm", "is a directory; name a file in it");
-    check(scratch.path / "a.jpg", ".exr, .hdr, .pfm, .png");
-    CHECK(contains(message_of([&] { check_file_writable(scratch.path / ""); }), "names no file"));
-    CHECK(message_of([&] { check_writable(scratch.path / "a.pfm"); }) == "(no error)");
-    CHECK(contains(message_of([&] { load_image(scratch.path / "dir.pfm"); }), "is a directory, not a file"));
-    CHECK(scratch.files() == 2);
+    check(scratch.path() / "missing" / "a.pfm", "does not exist; create it first");
+    check(scratch.path() / "file" / "a.pfm", "is not a directory");
+    check(scratch.path() / "dir.pfm", "is a directory; name a file in it");
+    check(scratch.path() / "a.jpg", ".exr, .hdr, .pfm, .png");
+    CHECK(contains(message_of([&] { check_file_writable(scratch.path() / ""); }), "names no file"));
+    CHECK(message_of([&] { check_writable(scratch.path() / "a.pfm"); }) == "(no error)");
+    CHECK(contains(message_of([&] { load_image(scratch.path() / "dir.pfm"); }), "is a directory, not a file"));
+    CHECK(scratch.files().size() == 2);
 }
 
 TEST_CASE("atomic files: replaced as a whole, through links, with names of every length") {
-    const Scratch scratch;
-    const fs::path path = scratch.path / "a.json";
+    const Folder scratch;
+    const fs::path path = scratch.path() / "a.json";
     write_file_atomically(path, "first, and longer");
     write_file_atomically(path, std::string_view("sec\0nd", 6));
     CHECK(read_file(path, 100) == std::string("sec\0nd", 6));
     CHECK(contains(message_of([&] { read_file(path, 5); }), "has 6 bytes; at most 5 are read"));
-    write_file_atomically(scratch.path / std::string(255, 'n'), "");
-    CHECK(read_file(scratch.path / std::string(255, 'n'), 0).empty());
-    fs::create_symlink(path, scratch.path / "link");
-    write_file_atomically(scratch.path / "link", "third");
-    CHECK(fs::is_symlink(scratch.path / "link"));
+    write_file_atomically(scratch.path() / std::string(255, 'n'), "");
+    CHECK(read_file(scratch.path() / std::string(255, 'n'), 0).empty());
+    fs::create_symlink(path, scratch.path() / "link");
+    write_file_atomically(scratch.path() / "link", "third");
+    CHECK(fs::is_symlink(scratch.path() / "link"));
     CHECK(read_file(path, 100) == "third");
-    CHECK(scratch.files() == 3);
-    fs::create_symlink("new", scratch.path / "to new");  // a link to what is not there yet
-    write_file_atomically(scratch.path / "to new", "fourth");
-    CHECK(fs::is_symlink(scratch.path / "to new"));
-    CHECK(read_file(scratch.path / "new", 100) == "fourth");
-    fs::create_symlink("loop", scratch.path / "loop");
-    check_file_writable(scratch.path / "loop");
+    CHECK(scratch.files().size() == 3);
+    fs::create_symlink("new", scratch.path() / "to new");  // a link to what is not there yet
+    write_file_atomically(scratch.path() / "to new", "fourth");
+    CHECK(fs::is_symlink(scratch.path() / "to new"));
+    CHECK(read_file(scratch.path() / "new", 100) == "fourth");
+    fs::create_symlink("loop", scratch.path() / "loop");
+    check_file_writable(scratch.path() / "loop");
 }
 
 TEST_CASE("two names of one file are told from two files, before and after it is written") {
-    const Scratch scratch;
-    const fs::path a = scratch.path / "a", b = scratch.path / "b";
-    fs::create_directory(scratch.path / "folder");
-    fs::create_directory_symlink("folder", scratch.path / "other name");
-    fs::create_symlink("a", scratch.path / "link");
-    fs::create_symlink(scratch.path / "link", scratch.path / "link to link");
+    const Folder scratch;
+    const fs::path a = scratch.path() / "a", b = scratch.path() / "b";
+    fs::create_directory(scratch.path() / "folder");
+    fs::create_directory_symlink("folder", scratch.path() / "other name");
+    fs::create_symlink("a", scratch.path() / "link");
+    fs::create_symlink(scratch.path() / "link", scratch.path() / "link to link");
     const auto check_all = [&] {
         CHECK(same_file(a, a));
-        CHECK(same_file(a, scratch.path / "folder" / ".." / "." / "a"));
+        CHECK(same_file(a, scratch.path() / "folder" / ".." / "." / "a"));
         CHECK(same_file(a, fs::relative(a)));
-        CHECK(same_file(a, scratch.path / "link"));
-        CHECK(same_file(scratch.path / "link to link", a));
-        CHECK(same_file(scratch.path / "folder" / "a", scratch.path / "other name" / "a"));
+        CHECK(same_file(a, scratch.path() / "link"));
+        CHECK(same_file(scratch.path() / "link to link", a));
+        CHECK(same_file(scratch.path() / "folder" / "a", scratch.path() / "other name" / "a"));
         CHECK_FALSE(same_file(a, b));
-        CHECK_FALSE(same_file(a, scratch.path / "folder" / "a"));
-        CHECK_FALSE(same_file(b, scratch.path / "link"));
+        CHECK_FALSE(same_file(a, scratch.path() / "folder" / "a"));
+        CHECK_FALSE(same_file(b, scratch.path() / "link"));
     };
     check_all();
     write_file_atomically(a, "");
     check_all();
-    CHECK_FALSE(same_file(a, scratch.path / "hard"));
-    fs::create_hard_link(a, scratch.path / "hard");
-    CHECK(same_file(a, scratch.path / "hard"));
+    CHECK_FALSE(same_file(a, scratch.path() / "hard"));
+    fs::create_hard_link(a, scratch.path() / "hard");
+    CHECK(same_file(a, scratch.path() / "hard"));
     write_file_atomically(b, "");
-    write_file_atomically(scratch.path / "folder" / "a", "");
+    write_file_atomically(scratch.path() / "folder" / "a", "");
     check_all();
 }
 
 #if defined(__unix__) || defined(__APPLE__)
 
 TEST_CASE("atomic files: a write that fails leaves the old file and no other") {
-    const Scratch scratch;
-    const fs::path path = scratch.path / "a.pfm";
+    const Folder scratch;
+    const fs::path path = scratch.path() / "a.pfm";
     save(path, Image(2, 2));
     // A file size limit stands in for a full disk: both show as a failed write.
     rlimit old_limit{};
@@ -547,25 +533,25 @@ TEST_CASE("atomic files: a write that fails leaves the old file and no other") {
     const rlimit limit{1000, old_limit.rlim_max};
     setrlimit(RLIMIT_FSIZE, &limit);
     const std::string replacing = message_of([&] { save(path, Image(100, 100)); });
-    const std::string creating = message_of([&] { save(scratch.path / "b.pfm", Image(100, 100)); });
+    const std::string creating = message_of([&] { save(scratch.path() / "b.pfm", Image(100, 100)); });
     setrlimit(RLIMIT_FSIZE, &old_limit);
     std::signal(SIGXFSZ, old_handler);
     CHECK(contains(replacing, "a.pfm: writing failed, nothing is left behind: "));
     CHECK(contains(creating, "b.pfm: writing failed"));
-    CHECK(scratch.files() == 1);
+    CHECK(scratch.files().size() == 1);
     CHECK(load_image(path).width() == 2);
 }
 
 TEST_CASE("atomic files: no permission") {
     if (geteuid() == 0) return;  // permissions do not bind root
-    const Scratch scratch;
-    const fs::path path = scratch.path / "a.pfm";
+    const Folder scratch;
+    const fs::path path = scratch.path() / "a.pfm";
     save(path, Image(2, 2));
     fs::permissions(path, fs::perms::owner_read);
     CHECK(contains(message_of([&] { check_writable(path); }), "exists and may not be written"));
-    fs::permissions(scratch.path, fs::perms::owner_read | fs::perms::owner_exec);
-    CHECK(contains(message_of([&] { check_writable(scratch.path / "b.pfm"); }), "cannot create a file"));
-    fs::permissions(scratch.path, fs::perms::owner_all);
+    fs::permissions(scratch.path(), fs::perms::owner_read | fs::perms::owner_exec);
+    CHECK(contains(message_of([&] { check_writable(scratch.path() / "b.pfm"); }), "cannot create a file"));
+    fs::permissions(scratch.path(), fs::perms::owner_all);
 }
 
 TEST_CASE("image files: headers that promise much take neither time nor memory") {

@@ -20,11 +20,11 @@ if [ ${#readers[@]} -eq 0 ]; then
     readers+=("${reader%.cpp}")
   done
 fi
-if [ -z "${CXX:-}" ]; then
-  for version in 22 21 20 19 18 17 16; do
-    command -v "clang++-$version" > /dev/null && export CXX=clang++-$version && break
-  done
-fi
+export CXX=${CXX:-$(newest_clang)}
+# The targets' files, in memory if there is such a place; libFuzzer ends without cleaning up.
+[ -d /dev/shm ] && files=$(mktemp -d /dev/shm/lightswitch-fuzz-XXXXXX) || files=$(mktemp -d)
+trap 'rm -rf "$files"' EXIT
+export TMPDIR=$files
 
 if ! configure_project -DLIGHTSWITCH_FUZZ=ON -DLIGHTSWITCH_BUILD_SAMPLES=OFF -DLIGHTSWITCH_BUILD_BENCH=OFF \
     -DLIGHTSWITCH_TEST_STRUCTURE=OFF || ! build_targets "${readers[@]/#/fuzz_}"; then
@@ -37,7 +37,8 @@ seeds() {
   case $1 in
     xml) find tests/data -name '*.xml' ;;
     obj | ply) find tests/data -name "*.$1" -size -20k ;;
-    serialized) find tests/data -name '*.serialized' ;;
+    serialized | pfm) find tests/data -name "*.$1" ;;
+    bitmap) find tests/data -name '*.png' -size -20k ;;
     spectrum) find tests/data -name '*.spd' ;;
   esac
   find "tests/fuzz/seeds/$1" -type f 2> /dev/null

@@ -2,6 +2,8 @@
 
 // Files that a test writes for a loader to read.
 
+#include "support/folder.hpp"
+
 #include <lightswitch/core/error.hpp>
 
 #include <doctest/doctest.h>
@@ -9,40 +11,10 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <random>
 #include <string>
 #include <string_view>
 
 namespace lightswitch::test {
-
-/// A directory that vanishes with the object.
-class Folder {
-public:
-    Folder() {
-        std::random_device random;
-        path_ = std::filesystem::temp_directory_path() /
-                ("lightswitch-" + std::to_string(random()) + std::to_string(random()));
-        std::filesystem::create_directory(path_);
-    }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-    ~Folder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-
-    const std::filesystem::path& path() const { return path_; }
-    /// Writes a file and returns its path.
-    std::filesystem::path write(const std::string& name, std::string_view bytes) const {
-        const auto path = path_ / name;
-        std::filesystem::remove(path);  // some file systems wait for the disk when a file is overwritten
-        std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-        return path;
-    }
-
-private:
-    std::filesystem::path path_;
-};
 
 /// The message of the `Error` that `function` throws; fails the test when it throws none.
 template <class F>

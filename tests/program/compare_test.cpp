@@ -17,7 +17,7 @@ lightswitch::Image image(int width, int height, float value) {
 }  // namespace
 
 TEST_CASE("compare prints the metrics and writes the difference") {
-    const Workspace workspace;
+    const Folder workspace;
     lightswitch::Image a = image(20, 10, 1);
     a(7, 3).y += 0.5f;
     lightswitch::save(workspace / "a.pfm", a);
@@ -45,7 +45,7 @@ TEST_CASE("compare prints the metrics and writes the difference") {
 }
 
 TEST_CASE("compare counts values that are not finite") {
-    const Workspace workspace;
+    const Folder workspace;
     lightswitch::Image a = image(4, 4, 1);
     a(1, 1).x = std::nanf("");
     lightswitch::save(workspace / "a.pfm", a);
@@ -57,7 +57,7 @@ TEST_CASE("compare counts values that are not finite") {
 }
 
 TEST_CASE("compare refuses what cannot be compared, and writes nothing") {
-    const Workspace workspace;
+    const Folder workspace;
     lightswitch::save(workspace / "a.pfm", image(4, 4, 1));
     lightswitch::save(workspace / "b.pfm", image(4, 5, 1));
     lightswitch::save(workspace / "c.png", image(4, 4, 1));
@@ -95,7 +95,7 @@ TEST_CASE("compare refuses what cannot be compared, and writes nothing") {
 }
 
 TEST_CASE("compare takes any number of images, and makes a page of them") {
-    const Workspace workspace;
+    const Folder workspace;
     lightswitch::save(workspace / "a.pfm", image(20, 10, 1));
     lightswitch::save(workspace / "b.pfm", image(20, 10, 1.5f));
     lightswitch::save(workspace / "c.pfm", image(20, 10, 2));
@@ -118,7 +118,7 @@ TEST_CASE("compare takes any number of images, and makes a page of them") {
 
 TEST_CASE("compare: the page's curves belong to one method each, and know the seconds") {
     if (!lightswitch::detail::has_exr) return;
-    const Workspace workspace;
+    const Folder workspace;
     const auto render = [&](const char* method, const char* spp, const char* file) {
         CHECK(run(workspace, {"render", "furnace", "--size", "8x8", "-m", method, "--spp", spp, "-o", file}).status ==
               0);
@@ -139,7 +139,7 @@ TEST_CASE("compare: the page's curves belong to one method each, and know the se
 }
 
 TEST_CASE("compare: the picture of a difference names the files") {
-    const Workspace workspace;
+    const Folder workspace;
     lightswitch::save(workspace / "a.pfm", image(20, 10, 1));
     lightswitch::save(workspace / "a-name-that-is-longer.pfm", image(20, 10, 1));
     lightswitch::save(workspace / "b.pfm", image(20, 10, 1.5f));

@@ -11,7 +11,7 @@ struct BadCall {
     std::string message;  // a part of it
 };
 
-void check_refused(const Workspace& workspace, const std::vector<BadCall>& calls) {
+void check_refused(const Folder& workspace, const std::vector<BadCall>& calls) {
     const auto before = workspace.files();
     for (const BadCall& call : calls) {
         std::string line;
@@ -37,7 +37,7 @@ std::vector<std::string> render(std::vector<std::string> more) {
 }  // namespace
 
 TEST_CASE("a command that is missing, unknown or misspelt") {
-    const Workspace workspace;
+    const Folder workspace;
     check_refused(
         workspace,
         {
@@ -54,7 +54,7 @@ TEST_CASE("a command that is missing, unknown or misspelt") {
 }
 
 TEST_CASE("render: scenes and methods that do not exist") {
-    const Workspace workspace;
+    const Folder workspace;
     workspace.write("mesh.txt", "v 0 0 0\n");
     workspace.write("broken.xml", "<scene version=\"3.0.0\">\n  <sensor type=\"fisheye\"/>\n</scene>\n");
     check_refused(
@@ -82,7 +82,7 @@ TEST_CASE("render: scenes and methods that do not exist") {
 }
 
 TEST_CASE("render: outputs that cannot be written") {
-    const Workspace workspace;
+    const Folder workspace;
     std::filesystem::create_directory(workspace / "folder.png");
     check_refused(workspace,
                   {
@@ -108,7 +108,7 @@ TEST_CASE("render: outputs that cannot be written") {
 }
 
 TEST_CASE("render: layers that do not exist or have no place") {
-    const Workspace workspace;
+    const Folder workspace;
     check_refused(workspace,
                   {
                       {render({"--aov", "colour"}),
@@ -124,7 +124,7 @@ TEST_CASE("render: layers that do not exist or have no place") {
 }
 
 TEST_CASE("render: values out of range") {
-    const Workspace workspace;
+    const Folder workspace;
     check_refused(workspace, {
                                  {render({"--spp", "0"}), "\"0\" is not a whole number from 1"},
                                  {render({"--spp", "many"}), "\"many\" is not a whole number"},
@@ -152,7 +152,7 @@ TEST_CASE("render: values out of range") {
 }
 
 TEST_CASE("numbers at their extremes: every option names itself") {
-    const Workspace workspace;
+    const Folder workspace;
     const auto refuse = [&](const std::string& command, std::initializer_list<std::string> options,
                             std::initializer_list<std::string> values) {
         std::vector<BadCall> calls;
@@ -171,7 +171,7 @@ TEST_CASE("numbers at their extremes: every option names itself") {
 }
 
 TEST_CASE("behind -- stand files, whatever they are called") {
-    const Workspace workspace;
+    const Folder workspace;
     workspace.write("-in.xml", "<scene version=\"3.0.0\">\n  <sensor type=\"perspective\"/>\n</scene>\n");
     const Ended info = run(workspace, {"info", "--", "-in.xml"});
     CHECK(info.status == 0);
@@ -190,7 +190,7 @@ TEST_CASE("behind -- stand files, whatever they are called") {
 }
 
 TEST_CASE("standard output that cannot be written is an error, and never a file") {
-    const Workspace workspace;
+    const Folder workspace;
     const Ended closed =
         Process(workspace, {"render", "furnace", "--spp", "1", "--size", "4x4", "-o", "x.pfm"}, "").wait();
     CHECK(closed.status == 2);

@@ -27,7 +27,7 @@ std::size_t count(const std::string& text, const std::string& part) {
 }  // namespace
 
 TEST_CASE("a strict render refuses what is not supported, and says how to go on") {
-    const Workspace workspace;
+    const Folder workspace;
     workspace.write("room.xml", scene);
     for (const char* command : {"render", "verify", "strategies"}) {
         std::vector<std::string> words{command, "room.xml"};
@@ -41,7 +41,7 @@ TEST_CASE("a strict render refuses what is not supported, and says how to go on"
 }
 
 TEST_CASE("--lenient renders with stand-ins, warns of each once, and keeps them beside the image") {
-    const Workspace workspace;
+    const Folder workspace;
     workspace.write("room.xml", scene);
     const Ended ended =
         run(workspace, {"render", "room.xml", "--lenient", "--quiet", "--spp", "1", "-o", "x.hdr", "--stats", "-"});
@@ -58,7 +58,7 @@ TEST_CASE("--lenient renders with stand-ins, warns of each once, and keeps them 
 }
 
 TEST_CASE("info lists every problem and what --lenient does about it") {
-    const Workspace workspace;
+    const Folder workspace;
     workspace.write("room.xml", scene);
     const Ended strict = run(workspace, {"info", "room.xml"});
     CHECK(strict.status == 0);
@@ -73,7 +73,7 @@ TEST_CASE("info lists every problem and what --lenient does about it") {
 }
 
 TEST_CASE("--sensor and --path") {
-    const Workspace workspace;
+    const Folder workspace;
     std::filesystem::create_directory(workspace / "meshes");
     workspace.write("meshes/t.obj", "v 0 0 3\nv 1 0 3\nv 0 1 3\nf 1 2 3\n");
     workspace.write(
@@ -101,7 +101,7 @@ TEST_CASE("--sensor and --path") {
 }
 
 TEST_CASE("--exposure: given, the scene's, or by the image") {
-    const Workspace workspace;
+    const Folder workspace;
     const auto scene_with = [](const std::string& film) {
         return "<scene version=\"3.0.0\"><sensor type=\"perspective\"><film type=\"ldrfilm\"><integer name=\"width\" "
                "value=\"4\"/><integer name=\"height\" value=\"4\"/>" +

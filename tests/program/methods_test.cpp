@@ -36,7 +36,7 @@ Words words(std::string_view method, const Words& more, int spp = samples) {
 }
 
 Result render(std::string_view method, const Words& more = {}, int spp = samples) {
-    const Workspace workspace;
+    const Folder workspace;
     const Ended ended = run(workspace, words(method, more, spp));
     INFO(method, ": ", ended.err);
     REQUIRE(ended.status == 0);
@@ -148,7 +148,7 @@ TEST_CASE("options of single methods do what they say") {
 
 TEST_CASE("the depth of paths is that of the command line, for every method that has one") {
     // In the furnace every surface emits 1 and reflects half: depth d shows the first d terms of 1 + 1/2 + 1/4 + ...
-    const Workspace workspace;
+    const Folder workspace;
     for (const char* method : {"path", "path-nee", "light", "bdpt", "photon", "vcm", "mlt"})
         for (const auto& [depth, value] : {std::pair{"1", 1.0}, {"2", 1.5}}) {
             const Ended ended = run(workspace, {"render", "furnace", "--size", "16x16", "--spp", "64", "-m", method,
@@ -160,7 +160,7 @@ TEST_CASE("the depth of paths is that of the command line, for every method that
 }
 
 TEST_CASE("options of single methods: wrong values, and methods that do not have them") {
-    const Workspace workspace;
+    const Folder workspace;
     const std::vector<std::tuple<std::string_view, Words, std::string>> calls{
         {"path-nee", {"--radius", "1"}, "--radius: there is no such setting in path-nee; it belongs to photon, vcm"},
         {"bdpt", {"--alpha", "0.5"}, "--alpha: there is no such setting in bdpt; it belongs to photon, vcm"},
@@ -203,7 +203,7 @@ TEST_CASE("options of single methods: wrong values, and methods that do not have
 }
 
 TEST_CASE("methods: a line for what each can and one for what it cannot, none too long for a terminal") {
-    const Workspace workspace;
+    const Folder workspace;
     const Ended ended = run(workspace, {"methods"});
     CHECK(ended.status == 0);
     lightswitch::for_each_method([&](const auto& method) {
@@ -218,7 +218,7 @@ TEST_CASE("methods: a line for what each can and one for what it cannot, none to
 }
 
 TEST_CASE("help: the options of single methods are a group of their own") {
-    const Workspace workspace;
+    const Folder workspace;
     for (const char* command : {"render", "verify"}) {
         const std::string help = run(workspace, {command, "--help"}).out;
         const std::size_t group = help.find("\nOptions of single methods:\n");

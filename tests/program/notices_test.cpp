@@ -8,7 +8,7 @@
 using namespace lightswitch::test;
 
 TEST_CASE("notices on mesh files are warnings, once each, unless --quiet") {
-    const Workspace workspace;
+    const Folder workspace;
     workspace.write("a.obj", "l 1 1\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\nf 1 3 4\n");
     // The second one hides behind the first.
     const std::string shape =

@@ -2,6 +2,7 @@
 
 // Running the program `lightswitch` as its users do: as a process of its own, in an empty directory.
 
+#include "support/folder.hpp"
 #include "support/paths.hpp"
 
 #include <doctest/doctest.h>
@@ -11,8 +12,6 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
-#include <random>
-#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -30,39 +29,6 @@ inline std::string read_text(const std::filesystem::path& path) {
     return text.str();
 }
 
-/// An empty directory that vanishes with the object.
-class Workspace {
-public:
-    Workspace() {
-        std::random_device random;
-        path_ = std::filesystem::temp_directory_path() /
-                ("lightswitch-" + std::to_string(random()) + std::to_string(random()));
-        std::filesystem::create_directory(path_);
-    }
-    Workspace(const Workspace&) = delete;
-    Workspace& operator=(const Workspace&) = delete;
-    ~Workspace() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-
-    std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-    const std::filesystem::path& path() const { return path_; }
-    void write(const std::string& name, const std::string& text) const {
-        std::ofstream(path_ / name, std::ios::binary) << text;
-    }
-    /// The names of all files, those beginning with a dot too.
-    std::set<std::string> files() const {
-        std::set<std::string> names;
-        for (const auto& entry : std::filesystem::directory_iterator(path_))
-            names.insert(entry.path().filename().string());
-        return names;
-    }
-
-private:
-    std::filesystem::path path_;
-};
-
 /// How a process ended.
 struct Ended {
     int status = -1;  ///< exit status; -1 when a signal ended it
@@ -77,7 +43,7 @@ class Process {
 public:
     /// `standard_output` names a file to use instead of keeping the output, "" to close the stream. `prepare` is called
     /// in the new process, and tells whether it may go on; where it may not, the status is 127.
-    Process(const Workspace& workspace, std::vector<std::string> arguments, const char* standard_output = nullptr,
+    Process(const Folder& workspace, std::vector<std::string> arguments, const char* standard_output = nullptr,
             const std::function<bool()>& prepare = {}) {
         std::string program = test::program();
         std::vector<char*> words{program.data()};
@@ -120,12 +86,12 @@ private:
         return file >= 0 && dup2(file, stream) == stream && (file == stream || close(file) == 0);
     }
 
-    Workspace streams_;
+    Folder streams_;
     pid_t id_ = -1;
 };
 
 /// Runs the program to its end.
-inline Ended run(const Workspace& workspace, const std::vector<std::string>& arguments) {
+inline Ended run(const Folder& workspace, const std::vector<std::string>& arguments) {
     return Process(workspace, arguments).wait();
 }
 

@@ -43,7 +43,7 @@ TEST_CASE("where the system starts no more threads, fewer render, or an error sa
     constexpr uid_t nobody = 61437;  // some number that no user has
     for (const rlim_t most : {1u, 2u, 3u, 4u, 6u})
         for (const char* threads : {"2", "8"}) {
-            const Workspace workspace;
+            const Folder workspace;
             REQUIRE(chmod(workspace.path().c_str(), 0777) == 0);
             Process process(
                 workspace,
@@ -75,7 +75,7 @@ TEST_CASE("where the system starts no more threads, fewer render, or an error sa
 }
 
 TEST_CASE("a file that may not become so large is an error, and nothing is left of it") {
-    const Workspace workspace;
+    const Folder workspace;
     const Ended ended =
         Process(workspace, {"render", "furnace", "--size", "64x64", "--spp", "1", "-o", "x.pfm"}, nullptr, [] {
             const rlimit limit{2048, 2048};
@@ -87,7 +87,7 @@ TEST_CASE("a file that may not become so large is an error, and nothing is left 
 }
 
 TEST_CASE("no output replaces an input or another output, whatever the two are called") {
-    const Workspace workspace;
+    const Folder workspace;
     workspace.write("scene.xml", scene);
     workspace.write("mesh.obj", mesh);
     for (int i = 1; i <= 3; ++i) {
@@ -174,7 +174,7 @@ TEST_CASE("a directory that may not be written") {
         MESSAGE("skipped: root may write everywhere");
         return;
     }
-    const Workspace workspace;
+    const Folder workspace;
     REQUIRE(chmod(workspace.path().c_str(), 0500) == 0);
     const Ended ended = run(workspace, {"render", "furnace", "-o", "x.pfm"});
     CHECK(is_user_error(ended));
@@ -183,7 +183,7 @@ TEST_CASE("a directory that may not be written") {
 }
 
 TEST_CASE("what Embree tells of itself never stands on standard output") {
-    const Workspace workspace;
+    const Folder workspace;
     const Ended rendered =
         run(workspace, {"render", "furnace", "--size", "4x4", "--spp", "1", "--embree", "verbose=2", "--stats", "-"});
     CHECK(rendered.status == 0);
@@ -201,7 +201,7 @@ TEST_CASE("a hang-up ends a render as other signals do, more than one of them to
         CAPTURE(ignored);
         Ended ended;
         for (useconds_t wait = 125'000; wait <= 16'000'000 && ended.status == -1; wait *= 2) {
-            const Workspace workspace;
+            const Folder workspace;
             Process process(workspace,
                             {"render", "furnace", "--size", "8x8", "--spp", "2147483647", "-q", "-o", "x.pfm"}, nullptr,
                             [ignored] { return std::signal(SIGHUP, ignored ? SIG_IGN : SIG_DFL) != SIG_ERR; });
@@ -224,7 +224,7 @@ TEST_CASE("a hang-up ends a render as other signals do, more than one of them to
 }
 
 TEST_CASE("a signal while a file is written leaves it whole, and no other") {
-    const Workspace workspace;
+    const Folder workspace;
     write_black(workspace / "a.pfm", 2000);
     const std::string target = "difference.pfm";
     bool caught = false;

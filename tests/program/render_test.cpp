@@ -39,7 +39,7 @@ std::string small_scene(const std::string& light, const std::string& sensor_extr
 }  // namespace
 
 TEST_CASE("one render goes to several files and formats") {
-    const Workspace workspace;
+    const Folder workspace;
     std::vector<std::string> words =
         furnace({"-o", "a.pfm", "--output=b.hdr", "--output", "c.PNG", "--stats", "s.json"});
     std::set<std::string> wanted{"a.pfm", "b.hdr", "c.PNG", "s.json"};
@@ -68,7 +68,7 @@ TEST_CASE("one render goes to several files and formats") {
 }
 
 TEST_CASE("the image depends on the seed and the sampler, and not on the number of threads") {
-    const Workspace workspace;
+    const Folder workspace;
     const auto bytes = [&](const std::vector<std::string>& more) {
         std::vector<std::string> words = furnace({"-q", "-o", "x.pfm"});
         words.insert(words.end(), more.begin(), more.end());
@@ -89,7 +89,7 @@ TEST_CASE("the image depends on the seed and the sampler, and not on the number 
 
 TEST_CASE("--aov: layers beside the same image") {
     if (!lightswitch::detail::has_exr) return;
-    const Workspace workspace;
+    const Folder workspace;
     workspace.write("room.xml", small_scene("<emitter type=\"constant\"/>"));
     const auto render = [&](std::vector<std::string> more) {
         std::vector<std::string> words{"render", "room.xml", "-D", "spp=4", "-o", "x.exr", "-o", "x.pfm"};
@@ -124,7 +124,7 @@ TEST_CASE("--aov: layers beside the same image") {
 
 TEST_CASE("the depth of paths is that of the command line") {
     // In the furnace every surface emits 1 and reflects half: depth d shows the first d terms of 1 + 1/2 + 1/4 + ...
-    const Workspace workspace;
+    const Folder workspace;
     for (const auto& [depth, value] : {std::pair{"1", 1.0}, {"2", 1.5}, {"3", 1.75}}) {
         const Ended ended = run(workspace, furnace({"-m", "path", "--max-depth", depth, "-o", "x.pfm"}));
         CHECK(ended.status == 0);
@@ -133,7 +133,7 @@ TEST_CASE("the depth of paths is that of the command line") {
 }
 
 TEST_CASE("--stats: every key, and alone on standard output") {
-    const Workspace workspace;
+    const Folder workspace;
     const Ended ended = run(workspace, furnace({"--stats", "-", "--max-depth", "7", "--seed", "5", "--threads", "2"}));
     CHECK(ended.status == 0);
     CHECK(ended.out.starts_with("{\n"));
@@ -197,7 +197,7 @@ TEST_CASE("--stats: every key, and alone on standard output") {
 }
 
 TEST_CASE("the budget: seconds and error end a render, whichever comes first") {
-    const Workspace workspace;
+    const Folder workspace;
     const Ended by_error =
         run(workspace, {"render", "furnace", "--size", "8x8", "--error", "0.9", "--seconds", "60", "--stats", "-"});
     CHECK(by_error.status == 0);
@@ -213,7 +213,7 @@ TEST_CASE("the budget: seconds and error end a render, whichever comes first") {
 }
 
 TEST_CASE("--error on an image that stays black: nothing is claimed, and it ends and says why") {
-    const Workspace workspace;
+    const Folder workspace;
     workspace.write("dark.xml", small_scene(""));
     const auto render = [&](std::vector<std::string> more) {
         std::vector<std::string> words{"render", "dark.xml", "-D", "spp=4", "--error", "0.1", "--stats", "-"};
@@ -233,7 +233,7 @@ TEST_CASE("--error on an image that stays black: nothing is claimed, and it ends
 }
 
 TEST_CASE("a scene file: its requests hold unless the command line says otherwise") {
-    const Workspace workspace;
+    const Folder workspace;
     workspace.write("room.xml", small_scene("<emitter type=\"constant\"/>"));
     const Ended plain = run(workspace, {"render", "room.xml", "--define", "spp=9", "--stats", "-"});
     CHECK(plain.status == 0);
@@ -251,7 +251,7 @@ TEST_CASE("a scene file: its requests hold unless the command line says otherwis
 }
 
 TEST_CASE("warnings about what will not be seen") {
-    const Workspace workspace;
+    const Folder workspace;
     const std::string point = "<emitter type=\"point\"><point name=\"position\" x=\"0\" y=\"0\" z=\"2\"/></emitter>";
     workspace.write("point.xml", small_scene(point));
     workspace.write("clipped.xml", small_scene(point,
@@ -275,7 +275,7 @@ TEST_CASE("warnings about what will not be seen") {
 }
 
 TEST_CASE("methods, info, version and help print") {
-    const Workspace workspace;
+    const Folder workspace;
     const Ended methods = run(workspace, {"methods"});
     CHECK(methods.status == 0);
     for (const char* text :
@@ -303,7 +303,7 @@ TEST_CASE("a signal ends a render, and what is done is kept") {
     for (const int signal : {SIGINT, SIGTERM}) {
         Ended ended;
         for (useconds_t wait = 250'000; wait <= 16'000'000 && ended.status == -1; wait *= 2) {
-            const Workspace workspace;
+            const Folder workspace;
             Process process(workspace, {"render", "furnace", "--size", "8x8", "--spp", "2147483647", "-o", "x.pfm",
                                         "--stats", "s.json"});
             usleep(wait);
@@ -324,7 +324,7 @@ TEST_CASE("a signal ends a render, and what is done is kept") {
 TEST_CASE("a signal before the first sample leaves nothing") {
     Ended ended;
     for (useconds_t wait = 250'000; wait <= 16'000'000 && ended.status == -1; wait *= 2) {
-        const Workspace workspace;  // one iteration takes several seconds
+        const Folder workspace;  // one iteration takes several seconds
         Process process(workspace,
                         {"render", "furnace", "--size", "3000x3000", "--threads", "1", "-m", "path", "-o", "x.pfm"});
         usleep(wait);

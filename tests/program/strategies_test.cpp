@@ -38,7 +38,7 @@ std::string file(int s, int t) { return "s" + std::to_string(s) + "_t" + std::to
 
 TEST_CASE("strategies: they add up to the image, and the picture shows each in its place") {
     if (!lightswitch::detail::has_exr) return;
-    const Workspace workspace;
+    const Folder workspace;
     const Ended ended = run(workspace, pyramid({"-o", "p.pfm", "--output", "p.png", "--directory", "."}));
     CHECK(ended.status == 0);
     CHECK(ended.err == "");
@@ -92,7 +92,7 @@ TEST_CASE("strategies: they add up to the image, and the picture shows each in i
 // The seed is fixed. Both sides err by about 3 %.
 TEST_CASE("strategies: unweighted, each finds all light of its length by itself") {
     if (!lightswitch::detail::has_exr) return;
-    const Workspace workspace;
+    const Folder workspace;
     const Ended ended = run(workspace, {"strategies", "cornell-box", "--size", "16x16", "--max-depth", "2", "--spp",
                                         "256", "--unweighted", "--directory", "."});
     CHECK(ended.status == 0);
@@ -108,7 +108,7 @@ TEST_CASE("strategies: unweighted, each finds all light of its length by itself"
 }
 
 TEST_CASE("strategies: what it cannot do is an error, and nothing is written") {
-    const Workspace workspace;
+    const Folder workspace;
     std::filesystem::create_directory(workspace / "full");
     const std::vector<std::pair<Words, std::string>> calls{
         {{"strategies"}, "strategies: name a scene"},
@@ -136,7 +136,7 @@ TEST_CASE("strategies: what it cannot do is an error, and nothing is written") {
 TEST_CASE("strategies: a signal ends it, and nothing is written") {
     Ended ended;
     for (useconds_t wait = 250'000; wait <= 16'000'000 && ended.status == -1; wait *= 2) {
-        const Workspace workspace;
+        const Folder workspace;
         Process process(workspace, {"strategies", "furnace", "--size", "8x8", "--spp", "2147483647", "-o", "p.pfm"});
         usleep(wait);
         process.signal(SIGINT);

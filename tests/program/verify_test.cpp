@@ -13,7 +13,7 @@ using namespace lightswitch::test;
 namespace {
 
 /// Independent images of noise around `level`: NAME-1.pfm, NAME-2.pfm, ...
-void write_noise(const Workspace& workspace, const std::string& name, int count, float level, unsigned seed) {
+void write_noise(const Folder& workspace, const std::string& name, int count, float level, unsigned seed) {
     std::mt19937 engine(seed);
     std::uniform_real_distribution<float> uniform(0.5f, 1.5f);
     for (int n = 1; n <= count; ++n) {
@@ -27,7 +27,7 @@ void write_noise(const Workspace& workspace, const std::string& name, int count,
 
 // False alarm: 1e-3.
 TEST_CASE("verify: methods on a scene") {
-    const Workspace workspace;
+    const Folder workspace;
     const Ended ended = run(workspace, {"verify", "furnace", "--methods", "path-nee", "--size", "16x16", "--seconds",
                                         "20", "--tolerance", "0.02", "--json", "v.json", "--report", "v.html"});
     CHECK(ended.status == 0);
@@ -49,7 +49,7 @@ TEST_CASE("verify: methods on a scene") {
 }
 
 TEST_CASE("verify: by default all methods that can have the reference's image") {
-    const Workspace workspace;
+    const Folder workspace;
     const auto verified = [&](const char* scene) {
         const Ended ended = run(workspace, {"verify", scene, "--size", "4x4", "--seconds", "0.01", "--lengths", "0",
                                             "--bootstrap", "1000", "--json", "-"});
@@ -64,7 +64,7 @@ TEST_CASE("verify: by default all methods that can have the reference's image") 
 }
 
 TEST_CASE("verify: the reference makes what the methods make, or leaves out what they cannot") {
-    const Workspace workspace;
+    const Folder workspace;
     workspace.write("caustic.xml", R"(<scene version="3.0.0"><sensor type="perspective">
         <transform name="to_world"><lookat origin="0,2,0.01" target="0,0,0" up="0,0,1"/></transform></sensor>
         <shape type="rectangle"><transform name="to_world"><rotate x="1" angle="-90"/></transform></shape>
@@ -99,7 +99,7 @@ TEST_CASE("verify: the reference makes what the methods make, or leaves out what
 
 // False alarm: 1e-3.
 TEST_CASE("verify: the options of single methods hold for those that have them") {
-    const Workspace workspace;
+    const Folder workspace;
     // Light is spread over the whole box, so the picture has no shadows.
     const Ended blurred =
         run(workspace, {"verify", "cornell-box", "--methods", "photon", "--reference", "path-nee", "--radius", "1000",
@@ -112,7 +112,7 @@ TEST_CASE("verify: the options of single methods hold for those that have them")
 }
 
 TEST_CASE("verify: too little time is no agreement") {
-    const Workspace workspace;
+    const Folder workspace;
     const Ended ended = run(
         workspace, {"verify", "cornell-box", "--size", "16x16", "--seconds", "0.2", "--tolerance", "1e-4", "--quiet"});
     CHECK(ended.status == 3);
@@ -122,7 +122,7 @@ TEST_CASE("verify: too little time is no agreement") {
 
 // False alarms: 1e-3 each.
 TEST_CASE("verify: files against files, and against a method") {
-    const Workspace workspace;
+    const Folder workspace;
     write_noise(workspace, "a", 12, 1, 1);
     write_noise(workspace, "b", 9, 1, 2);
     write_noise(workspace, "c", 12, 1.06f, 3);
@@ -145,7 +145,7 @@ TEST_CASE("verify: files against files, and against a method") {
 }
 
 TEST_CASE("verify: what it cannot do is an error that says what to do, and nothing is written") {
-    const Workspace workspace;
+    const Folder workspace;
     write_noise(workspace, "a", 4, 1, 1);
     write_noise(workspace, "few", 2, 1, 1);
     for (int n = 1; n <= 3; ++n)
