@@ -1,5 +1,5 @@
 # shellcheck shell=bash
-# Sourced by tests/run.sh, samples/run.sh and .ci/run: from a fresh clone to built targets.
+# Sourced by the scripts that build: from a fresh clone to built targets.
 #
 # Environment:
 #   LIGHTSWITCH_BUILD_DIR  build directory (default: build/ in the checkout)
@@ -13,6 +13,15 @@ jobs=${LIGHTSWITCH_JOBS:-$(nproc 2> /dev/null || getconf _NPROCESSORS_ONLN)}
 export CCACHE_BASEDIR=${CCACHE_BASEDIR:-$root} CCACHE_NOHASHDIR=${CCACHE_NOHASHDIR:-1}
 # Without these ccache compiles anew whatever is precompiled.
 export CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros}
+
+# Versions of Clang that will do, the newest first; newest_clang prints the compiler of the first that is installed.
+clang_versions=(22 21 20 19 18 17 16)
+newest_clang() {
+  local version
+  for version in "${clang_versions[@]}"; do
+    if command -v "clang++-$version" > /dev/null; then echo "clang++-$version"; return; fi
+  done
+}
 
 # configure_project [CMAKE_OPTION...]: installs what is missing and configures. Options stay in
 # the build directory until they are given another value.
