@@ -14,6 +14,17 @@
 
 namespace lightswitch {
 
+namespace detail {
+
+/// What the surface model of a material is called in scene files; empty if it says nothing of that.
+template <Material M>
+constexpr std::string_view model_name() {
+    if constexpr (requires { model_of<M>::name; }) return model_of<M>::name;
+    else return {};
+}
+
+}  // namespace detail
+
 /// Any surface model, or what gives one at every place; a value, of which copies are cheap. Grey if nothing else.
 class AnyMaterial {
 public:
@@ -64,10 +75,7 @@ private:
             if constexpr (Bsdf<M>) return is_isotropic(material);
             else return true;
         }
-        std::string_view model_name() const override {
-            if constexpr (requires { model_of<M>::name; }) return model_of<M>::name;
-            else return {};
-        }
+        std::string_view model_name() const override { return detail::model_name<M>(); }
         bool placed() const override { return PlacedMaterial<M>; }
 
         M material;

@@ -91,23 +91,21 @@ SceneType build_as(const SceneDescription<Material>& description, const BuildOpt
     return detail::BuildAs<SceneType>::build(description, options);
 }
 
-/// Builds the first of the alternatives, all of which are scenes, that can hold the description. Throws like
-/// `build_scene`.
+/// Builds the first of the alternatives, all of which are scenes, that can hold the description, or else the last.
+/// Throws like `build_scene`.
 template <class Variant = AnyScene>
 Variant build_any(const LibraryDescription& description, const BuildOptions& options = {}) {
-    return [&]<std::size_t... I>(std::index_sequence<I...>) {
-        constexpr std::size_t last = sizeof...(I);
-        std::optional<Variant> scene;
-        const auto build = [&]<class SceneType>(std::type_identity<SceneType>, bool fits) {
-            if (!scene && fits) scene.emplace(build_as<SceneType>(description, options));
-        };
-        (build(std::type_identity<std::variant_alternative_t<I, Variant>>(),
-               detail::Capacity<std::variant_alternative_t<I, Variant>>::holds(description)),
-         ...);
-        build(std::type_identity<std::variant_alternative_t<last, Variant>>(), true);
-        return std::move(*scene);
+    std::optional<Variant> scene;
+    const auto try_as = [&]<class SceneType>(std::type_identity<SceneType>, bool is_last) {
+        if (is_last || detail::Capacity<SceneType>::holds(description))
+            scene.emplace(build_as<SceneType>(description, options));
+        return scene.has_value();
+    };
+    [&]<std::size_t... I>(std::index_sequence<I...>) {
+        (try_as(std::type_identity<std::variant_alternative_t<I, Variant>>(), I + 1 == sizeof...(I)) || ...);
     }
-    (std::make_index_sequence<std::variant_size_v<Variant> - 1>());
+    (std::make_index_sequence<std::variant_size_v<Variant>>());
+    return std::move(*scene);
 }
 
 }  // namespace lightswitch

@@ -135,7 +135,7 @@ private:
         constexpr std::size_t kind =
             itself < sizeof...(B) ? itself : first_of<std::is_constructible_v<B, const M&>...>();
         if constexpr (kind == sizeof...(B)) {
-            no_place(AnyMaterial(material).model_name(), origin);
+            no_place(model_name<M>(), origin);
         } else {
             auto& list = std::get<kind>(data_.bsdfs);
             check_count(list.size(), MaterialIndex::max_position, origin, "surface models");

@@ -206,8 +206,9 @@ inline bool is_affine(const DMat4& m) { return m[0].w == 0 && m[1].w == 0 && m[2
 /// inverse.
 inline double squeeze(const DMat3& linear) { return largest_entry(linear) * largest_entry(glm::inverse(linear)); }
 
-inline std::string squeeze_problem(const DMat3& linear) {
-    if (9 * squeeze(linear) < 1e4) return {};
+/// What that cannot be of an instance.
+inline std::string squeeze_problem(double squeeze) {
+    if (9 * squeeze < 1e4) return {};
     return "the instance's transform has no inverse, or squeezes the group by more than 1 : 1000";
 }
 
@@ -218,7 +219,7 @@ inline std::string instance_problem(const DMat4& to_world) {
             !problem.empty())
             return problem;
     if (!is_affine(to_world)) return "the instance's transform is not affine";
-    return squeeze_problem(DMat3(to_world));
+    return squeeze_problem(squeeze(DMat3(to_world)));
 }
 
 template <class Material>

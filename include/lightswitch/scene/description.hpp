@@ -2,6 +2,7 @@
 
 // A scene as data: what a file or a program says, before anything is checked, scaled or built.
 
+#include <lightswitch/bsdf/material.hpp>
 #include <lightswitch/bsdf/two_sided.hpp>
 #include <lightswitch/camera/camera_description.hpp>
 #include <lightswitch/core/error.hpp>
@@ -15,6 +16,7 @@
 #include <lightswitch/scene/material_layer.hpp>
 #include <lightswitch/scene/shapes.hpp>
 
+#include <concepts>
 #include <optional>
 #include <string>
 #include <variant>

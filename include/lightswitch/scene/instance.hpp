@@ -51,14 +51,15 @@ struct InstanceRecord {
         const DMat3 linear = DMat3(to_world) * ratio;
         const DVec3 shift = scene.point(DVec3(to_world * glm::dvec4(group.space.center(), 1)));
         const DMat3 inverse = glm::inverse(linear);
-        if (const std::string problem = squeeze_problem(linear); !problem.empty()) fail(origin, problem);
+        const double squeezed = squeeze(linear);
+        if (const std::string problem = squeeze_problem(squeezed); !problem.empty()) fail(origin, problem);
         if (!(largest_entry(linear) > smallest_shape))
             fail(origin, "the instance is too small to be seen beside the rest of the scene");
         // Embree inverts the matrix in single precision.
         return {.group = number,
                 .to_scene = {Mat3(linear), Vec3(shift)},
                 .to_group = {Mat3(inverse), Vec3(-(inverse * shift))},
-                .rounding = gamma_bound(8) * float(9 * squeeze(linear))};
+                .rounding = gamma_bound(8) * float(9 * squeezed)};
     }
 
     /// As Embree takes it.
