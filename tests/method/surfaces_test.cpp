@@ -1,9 +1,9 @@
 // All surface models, layers over them, and instances, against Mitsuba 3.9.1: tests/data/surfaces; and methods against
 // each other on random scenes of them.
 
+#include "method/surfaces.hpp"
 #include "method/reference.hpp"
 #include "support/paths.hpp"
-#include "support/random_surfaces.hpp"
 
 #include <lightswitch/method/bdpt.hpp>
 #include <lightswitch/method/photon_mapping.hpp>
@@ -54,23 +54,18 @@ TEST_CASE("surfaces: instances and a textured lamp look as in Mitsuba") {
 
 #endif
 
-// False alarm: 1e-3 in all comparisons together.
 TEST_CASE("surfaces: methods agree on random ones, for every path length") {
-    constexpr int scenes = 4, depths[] = {2, 3, 5};
-    constexpr int comparisons = 2 * scenes * static_cast<int>(std::size(depths));
-    for (std::uint32_t seed = 1; seed <= scenes; ++seed) {
-        const TexturedScene scene = build_scene<TexturedBsdfs, AllLights>(random_surfaces(seed));
-        for (const int depth : depths) {
-            const auto nee = replicate(scene, PathTracerNee{.max_depth = depth, .rr_depth = 1}, 8, 16, 64);
-            const auto check = [&](const auto& method, int samples) {
-                const auto ours = replicate(scene, method, 8, 16, samples, Sampling::independent, 1001);
-                const Comparison comparison = compare(ours, nee, 1e-3, comparisons);
-                CHECK_MESSAGE(comparison.agree(), scene.name(), ", ", method.name, ", depth ", depth, ": ", comparison);
-            };
-            check(PathTracer{.max_depth = depth}, 128);
-            check(Bdpt{.max_depth = depth, .rr_depth = 1}, 32);
-        }
-    }
+    const SurfacesCase few{.first_seed = 1,
+                           .scenes = 4,
+                           .depths = {2, 3, 5},
+                           .methods = 2,
+                           .rr_depth = 1,
+                           .nee_samples = 64,
+                           .sampling = Sampling::independent};
+    check_on_random_surfaces(few, [](int depth, const auto& check) {
+        check(PathTracer{.max_depth = depth}, 128);
+        check(Bdpt{.max_depth = depth, .rr_depth = 1}, 32);
+    });
 }
 
 // Photons are left, and gathered, where layers are by chance. Two floors that fill the image, so that nothing is
