@@ -35,6 +35,8 @@ measure 'the same with compiled.hpp' "$work/compiled.cpp"
 measure 'samples/02_switch.cpp' samples/02_switch.cpp
 echo '#include <lightswitch/lightswitch.hpp>' > "$work/headers.cpp"
 measure 'lightswitch.hpp alone' "$work/headers.cpp"
+echo '#include <tbb/parallel_for.h>' > "$work/headers.cpp"
+measure "of which oneTBB's parallel_for.h" "$work/headers.cpp"
 over=0
 for scene in DiffuseScene FullScene TexturedScene; do
   for method in Silhouette Phong PathTracer PathTracerNee LightTracer Bdpt PhotonMapping Vcm Mlt; do

@@ -23,14 +23,6 @@ import scipy.stats
 TILES = 8
 
 
-def read_pfm(path):
-    with open(path, "rb") as file:
-        kind, size, scale = (file.readline().decode().strip() for _ in range(3))
-        width, height = map(int, size.split())
-        values = np.frombuffer(file.read(), "<f4" if float(scale) < 0 else ">f4")
-    return values.reshape(height, width, 3 if kind == "PF" else 1)[::-1].astype(np.float64)
-
-
 def included(text, folder, depth=0):
     """The text with the contents of the files that it includes."""
     def contents(element):
@@ -63,7 +55,7 @@ def ours(options, scene, seed):
                               "--quiet", "--output", output], capture_output=True, text=True, timeout=options.timeout)
         if run.returncode != 0:
             raise RuntimeError(run.stderr.strip().splitlines()[0])
-        return tiles(read_pfm(output), options.size)
+        return tiles(np.array(mi.Bitmap(output), dtype=np.float64), options.size)
 
 
 def compare(options, path):
