@@ -94,23 +94,6 @@ SceneSummary summarize(const LibraryDescription& scene) {
     return summary;
 }
 
-/// Gives the image another size. A part of a larger image stays about the same part.
-void resize(FilmDescription& film, int width, int height) {
-    const auto scale = [](int length, int from, int to) {
-        return static_cast<int>(std::lround(double(length) * to / from));
-    };
-    if (film.full_width > 0) {
-        film.crop_x = scale(film.crop_x, film.width, width);
-        film.full_width = std::max(film.crop_x + width, scale(film.full_width, film.width, width));
-    }
-    if (film.full_height > 0) {
-        film.crop_y = scale(film.crop_y, film.height, height);
-        film.full_height = std::max(film.crop_y + height, scale(film.full_height, film.height, height));
-    }
-    film.width = width;
-    film.height = height;
-}
-
 }  // namespace
 
 LoadedScene load_scene(const SceneOptions& options, bool quiet, StandIns tell_stand_ins) {
@@ -125,12 +108,12 @@ LoadedScene load_scene(const SceneOptions& options, bool quiet, StandIns tell_st
         for (const std::string& text : stand_ins) print_warning(text);
     const FilmDescription& film = description.film;
     if (options.size) {
-        resize(description.film, options.size->width, options.size->height);
+        description.film.resize(options.size->width, options.size->height);
     } else if (const int side = std::max(film.width, film.height); options.shrink_to > 0 && side > options.shrink_to) {
         const auto shrunk = [&](int length) {
             return std::max(1, static_cast<int>(std::lround(double(length) * options.shrink_to / side)));
         };
-        resize(description.film, shrunk(film.width), shrunk(film.height));
+        description.film.resize(shrunk(film.width), shrunk(film.height));
     }
     if (options.filter) description.film.filter = *options.filter;
     SceneSummary summary = summarize(description);

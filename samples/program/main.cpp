@@ -28,13 +28,15 @@
 namespace lightswitch::program {
 namespace {
 
-constexpr std::array<std::string_view, 6> commands{"render", "compare", "verify", "strategies", "methods", "info"};
+constexpr std::array<std::string_view, 7> commands{"render",     "view",    "compare", "verify",
+                                                   "strategies", "methods", "info"};
 /// CLI11's help, with a usage line that shows what must be given.
 class Help : public CLI::Formatter {
 public:
     std::string make_usage(const CLI::App* app, std::string) const override {
         const std::string command = app->get_name();
         if (command == "render") return usage("render SCENE --output FILE [OPTIONS]");
+        if (command == "view") return usage("view [SCENE] [OPTIONS]");
         if (command == "compare") return usage("compare A B ... [OPTIONS]");
         if (command == "verify")
             return usage(
@@ -108,11 +110,13 @@ int run_command(int argc, char** argv) {
         "whose names begin with \"-\".");
 
     RenderOptions render_options;
+    ViewOptions view_options;
     CompareOptions compare_options;
     VerifyCommand verify_options;
     StrategiesCommand strategies_options;
     SceneOptions info_options;
     CLI::App& render_command = *app.add_subcommand("render", "Render a scene to image files");
+    CLI::App& view_command = *app.add_subcommand("view", "Open a window in which methods are switched live");
     CLI::App& compare_command = *app.add_subcommand("compare", "Measure and show how images differ");
     CLI::App& verify_command = *app.add_subcommand("verify", "Tell whether methods have the same expected image");
     CLI::App& strategies_command =
@@ -120,6 +124,7 @@ int run_command(int argc, char** argv) {
     CLI::App& methods_command = *app.add_subcommand("methods", "List the methods: kind, what each can and cannot do");
     CLI::App& info_command = *app.add_subcommand("info", "Tell what a scene requires");
     add_render(render_command, render_options);
+    add_view(view_command, view_options);
     add_compare(compare_command, compare_options);
     add_verify(verify_command, verify_options);
     add_strategies(strategies_command, strategies_options);
@@ -154,6 +159,7 @@ int run_command(int argc, char** argv) {
     const CLI::App& command = *app.get_subcommands().front();
     refuse_leftovers(command);
     if (&command == &methods_command) return list_methods();
+    if (&command == &view_command) return view(view_options);
     if (&command == &compare_command) return compare(compare_options);
     if (&command == &verify_command) return verify(verify_options);
     const SceneOptions& scene = &command == &info_command         ? info_options

@@ -23,7 +23,7 @@ void add_outputs(CLI::App& app, std::vector<std::filesystem::path>& outputs, con
         help);
 }
 
-Size parse_size(std::string_view text) {
+Size parse_size(std::string_view option, std::string_view text) {
     const std::size_t x = text.find('x');
     long long width = 0, height = 0;
     try {
@@ -31,12 +31,12 @@ Size parse_size(std::string_view text) {
         width = parse_integer_option("", text.substr(0, x), 1, unlimited);
         height = parse_integer_option("", text.substr(x + 1), 1, unlimited);
     } catch (const Error&) {
-        throw Error(fmt::format("--size: \"{}\" is not WIDTHxHEIGHT in pixels, such as 640x480", text));
+        throw Error(fmt::format("{}: \"{}\" is not WIDTHxHEIGHT in pixels, such as 640x480", option, text));
     }
     try {
         Image::check_size(width, height);
     } catch (const Error& error) {
-        throw Error(fmt::format("--size: {}", error.what()));
+        throw Error(fmt::format("{}: {}", option, error.what()));
     }
     return {static_cast<int>(width), static_cast<int>(height)};
 }
@@ -81,6 +81,20 @@ int parse_max_depth(std::string_view text) {
     return depth;
 }
 
+/// How long paths are, and what draws their random numbers.
+void add_path_options(CLI::App& app, auto& options) {
+    add_value(
+        app, "--max-depth", "D", [&](const std::string& text) { options.max_depth = parse_max_depth(text); },
+        "path length: 1 is emission seen directly, 2 adds direct light,\n-1 is unlimited (default: the scene's, or "
+        "-1)");
+    add_value(
+        app, "--rr-depth", "D", [&](const std::string& text) { options.rr_depth = parse_int("--rr-depth", text, 0); },
+        "bounces before Russian roulette begins (default: the scene's, or 5)");
+    add_value(
+        app, "--sampler", "NAME", [&](const std::string& text) { options.sampling = parse_sampling(text); },
+        "sobol (default: less noise) or independent");
+}
+
 }  // namespace
 
 void add_scene_options(CLI::App& app, SceneOptions& options) {
@@ -110,7 +124,7 @@ void add_scene_options(CLI::App& app, SceneOptions& options) {
         "stand-ins for what the scene file asks for and is not supported,\neach with a warning; \"info\" lists "
         "them");
     add_value(
-        app, "--size", "WxH", [&](const std::string& text) { options.size = parse_size(text); },
+        app, "--size", "WxH", [&](const std::string& text) { options.size = parse_size("--size", text); },
         "image size in pixels, instead of the scene's");
     add_value(
         app, "--filter", "NAME", [&](const std::string& text) { options.filter = parse_filter(text); },
@@ -145,16 +159,7 @@ void add_render(CLI::App& app, RenderOptions& options) {
         "samples on.\nAlone it ends an image that stays black after 256 samples");
     add_seed(app, options.seed, "another seed gives other noise (default: 0)");
     add_threads(app, options.threads, ".\nThe image is the same for any number");
-    add_value(
-        app, "--max-depth", "D", [&](const std::string& text) { options.max_depth = parse_max_depth(text); },
-        "path length: 1 is emission seen directly, 2 adds direct light,\n-1 is unlimited (default: the scene's, or "
-        "-1)");
-    add_value(
-        app, "--rr-depth", "D", [&](const std::string& text) { options.rr_depth = parse_int("--rr-depth", text, 0); },
-        "bounces before Russian roulette begins (default: the scene's, or 5)");
-    add_value(
-        app, "--sampler", "NAME", [&](const std::string& text) { options.sampling = parse_sampling(text); },
-        "sobol (default: less noise) or independent");
+    add_path_options(app, options);
     add_value(
         app, "--exposure", "STOPS",
         [&](const std::string& text) {
@@ -192,6 +197,47 @@ void add_render(CLI::App& app, RenderOptions& options) {
         "bootstrap, large_steps, refine) and what they counted, in the last iteration (photons, photon_map_bytes,\n"
         "light_vertices, radius_pixels) or in all (chains, mutations, acceptance_rate, large_step_rate,\n"
         "normalization).");
+}
+
+void add_view(CLI::App& app, ViewOptions& options) {
+    add_scene_options(app, options.scene);
+    add_name(app, "-m,--method", "NAME", options.method,
+             "the method that is shown first: " + list(known_methods) + "\n(default: path-nee)");
+    add_name(app, "-a,--against", "NAME", options.against,
+             "the method that it is compared with, which renders in the\nbackground (default: none; Shift and a digit "
+             "choose one)");
+    add_value(
+        app, "--spp", "N", [&](const std::string& text) { options.samples = parse_int("--spp", text, 1); },
+        "samples per pixel after which a method rests (default: it goes on)");
+    add_path_options(app, options);
+    add_seed(app, options.seed, "another seed gives other noise (default: 0)");
+    add_threads(app, options.threads);
+    add_value(
+        app, "--exposure", "STOPS",
+        [&](const std::string& text) {
+            options.exposure = parse_float("--exposure", text, std::numeric_limits<double>::lowest(), false);
+        },
+        "brightness: radiance times 2^STOPS (default: what the scene asks\nfor, or chosen by the first picture)");
+    add_value(
+        app, "--window", "WxH", [&](const std::string& text) { options.window = parse_size("--window", text); },
+        "size of the window (default: 1280x800)");
+    add_value(
+        app, "--seconds", "S",
+        [&](const std::string& text) { options.seconds = parse_number_option("--seconds", text, 0, true); },
+        "close the window after so long, without asking");
+    add_name(app, "--stats", "FILE.json", options.stats,
+             "when it closes, write what was rendered and how often the window\nwas drawn; - is standard output");
+    app.add_flag("-q,--quiet", options.quiet, "no notices on scene and mesh files");
+    add_method_options(app, options.of_methods);
+    app.footer(
+        "Keys 0 to 8 switch the method at once, Shift and a digit choose what it is compared with, F2 to F11 the\n"
+        "view: image, side by side, split, flicker, difference, relative difference, significance, albedo, normal,\n"
+        "depth. The mouse turns (left), moves (right) and zooms (wheel); ? shows all keys. Each method keeps what it\n"
+        "has rendered until the camera moves; after N samples the image is that of \"render --spp N\", bit for bit.\n"
+        "A file that is dropped on the window is opened.\n\n"
+        "Examples:\n"
+        "  lightswitch view cornell-box\n"
+        "  lightswitch view room.xml --method bdpt --against path-nee --size 640x360");
 }
 
 void add_compare(CLI::App& app, CompareOptions& options) {

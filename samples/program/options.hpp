@@ -11,6 +11,7 @@ namespace lightswitch::program {
 // Each adds one sub-command's options, with their help; reading them throws `Error`.
 void add_scene_options(CLI::App& app, SceneOptions& options);
 void add_render(CLI::App& app, RenderOptions& options);
+void add_view(CLI::App& app, ViewOptions& options);
 void add_compare(CLI::App& app, CompareOptions& options);
 void add_verify(CLI::App& app, VerifyCommand& command);
 void add_strategies(CLI::App& app, StrategiesCommand& command);

@@ -86,6 +86,22 @@ struct VerifyCommand {
     bool quiet = false;
 };
 
+struct ViewOptions {
+    SceneOptions scene;
+    std::string method = "path-nee", against;  ///< names; the second may be empty
+    MethodOptions of_methods;                  ///< each for those that have it
+    std::optional<int> max_depth, rr_depth;
+    int samples = 0;  ///< after which a method rests; 0: it never does
+    std::uint64_t seed = 0;
+    int threads = 0;
+    Sampling sampling = Sampling::sobol;
+    std::optional<float> exposure;  ///< stops; nothing: what the scene says, or chosen by the first image
+    Size window{1280, 800};
+    double seconds = 0;  ///< after which the window closes; 0: never
+    std::string stats;   ///< a file, "-" for standard output, or empty
+    bool quiet = false;
+};
+
 inline constexpr int most_strategy_depth = 16;  ///< then there are 151 of them
 
 struct StrategiesCommand {
@@ -102,6 +118,7 @@ int render(const RenderOptions& options);
 int compare(const CompareOptions& options);
 int verify(const VerifyCommand& command);
 int strategies(const StrategiesCommand& command);
+int view(const ViewOptions& options);
 int info(const SceneOptions& options);
 int list_methods();
 

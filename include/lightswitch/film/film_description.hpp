@@ -3,6 +3,8 @@
 #include <lightswitch/core/error.hpp>
 #include <lightswitch/film/filter.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace lightswitch {
@@ -19,6 +21,22 @@ struct FilmDescription {
     /// Width and height of the whole that the image is a part of.
     std::pair<int, int> full_size() const {
         return {full_width > 0 ? full_width : width, full_height > 0 ? full_height : height};
+    }
+    /// Gives the image another size. A part of a larger image stays about the same part.
+    void resize(int new_width, int new_height) {
+        const auto scale = [](int length, int from, int to) {
+            return static_cast<int>(std::lround(double(length) * to / from));
+        };
+        if (full_width > 0) {
+            crop_x = scale(crop_x, width, new_width);
+            full_width = std::max(crop_x + new_width, scale(full_width, width, new_width));
+        }
+        if (full_height > 0) {
+            crop_y = scale(crop_y, height, new_height);
+            full_height = std::max(crop_y + new_height, scale(full_height, height, new_height));
+        }
+        width = new_width;
+        height = new_height;
     }
     double aspect() const { return static_cast<double>(full_size().first) / full_size().second; }
 };

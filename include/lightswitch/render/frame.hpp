@@ -10,6 +10,7 @@
 #include <lightswitch/render/splatter.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <concepts>
 #include <stop_token>
 #include <type_traits>
@@ -66,7 +67,15 @@ public:
     const E& executor() const { return executor_; }
     /// True when the loop has been asked to end; the iteration's result is then thrown away, so a method may return
     /// early.
-    bool stopped() const { return stop_.stop_requested(); }
+    bool stopped() const {
+        if (!stop_.stop_requested()) [[likely]]
+            return false;
+        told_to_stop_.store(true, std::memory_order_relaxed);
+        return true;
+    }
+    /// Whether `stopped()` was true once, so that something may be missing: what comes after the last time that anybody
+    /// asked breaks nothing off.
+    bool broken_off() const { return told_to_stop_.load(std::memory_order_relaxed); }
 
     /// Calls `fn(ray, sampler)` once for every pixel and adds the `Rgb` that it returns to the pixel. The ray comes
     /// from the camera through a point of the pixel's filter. `fn` may take a third argument, the `PixelContext`,
@@ -203,6 +212,7 @@ private:
     std::uint64_t seed_, iteration_;
     std::uint64_t pixel_passes_ = 0, path_passes_ = 0;  // how many calls of `pixels` and `paths` there were
     std::stop_token stop_;
+    mutable std::atomic<bool> told_to_stop_ = false;
     RenderCounts& counts_;
 };
 

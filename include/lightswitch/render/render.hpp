@@ -127,7 +127,9 @@ public:
     /// Makes iterations until the budget is spent or the stop token asks for an end. Seconds count from this call;
     /// samples and error concern everything accumulated so far. What a method or an observer throws comes out of here;
     /// the whole iterations before it are kept. Throws `Error` when a limit is not one.
-    void run(Budget budget);
+    void run(Budget budget) { run(budget, settings_.stop); }
+    /// The same, but `pause` is what asks for an end, and another call can go on. Images are the same with and without.
+    void run(Budget budget, const std::stop_token& pause);
 
     const Film& film() const { return film_; }
     const RenderStatistics& statistics() const { return statistics_; }
@@ -139,14 +141,14 @@ private:
 
     decltype(auto) image_method() const { return detail::as_image_method<Frame<SceneType, E>, SceneType>(method_); }
 
-    Frame<SceneType, E> frame(std::uint64_t iteration) {
+    Frame<SceneType, E> frame(std::uint64_t iteration, const std::stop_token& stop) {
         return Frame<SceneType, E>({.scene = scene_,
                                     .film = film_,
                                     .executor = executor_,
                                     .sampling = settings_.sampling,
                                     .seed = settings_.seed,
                                     .iteration = iteration,
-                                    .stop = settings_.stop,
+                                    .stop = stop,
                                     .counts = statistics_.counts});
     }
 
@@ -170,7 +172,7 @@ Session<SceneType, M, E>::Session(const SceneType& scene, const M& method, const
       executor_(std::move(executor)),
       film_(scene.camera().width(), scene.camera().height()) {
     statistics_.threads = executor_.threads();
-    auto preparation = frame(Frame<SceneType, E>::before_the_first);
+    auto preparation = frame(Frame<SceneType, E>::before_the_first, settings_.stop);
     state_.reset(new State{image_method().start(preparation)});
     film_.discard(executor_);
 }
@@ -182,22 +184,22 @@ template <class SceneType, class M, Executor E>
 Session<SceneType, M, E>::~Session() = default;
 
 template <class SceneType, class M, Executor E>
-void Session<SceneType, M, E>::run(Budget budget) {
+void Session<SceneType, M, E>::run(Budget budget, const std::stop_token& pause) {
     using Clock = std::chrono::steady_clock;
     detail::check(budget);
     if (budget.samples == 0 && budget.seconds == 0 && budget.error == 0) budget.samples = 64;
     const auto begin = Clock::now();
     const std::uint64_t already = film_.iterations();
     double fraction = 0;
-    while (!settings_.stop.stop_requested() && !(budget.samples > 0 && film_.iterations() >= wanted(budget))) {
-        auto current = frame(film_.iterations());
+    while (!pause.stop_requested() && !(budget.samples > 0 && film_.iterations() >= wanted(budget))) {
+        auto current = frame(film_.iterations(), pause);
         try {
             image_method().iterate(current, state_->value);
         } catch (...) {
             film_.discard(executor_);
             throw;
         }
-        if (settings_.stop.stop_requested()) {
+        if (current.broken_off()) {
             film_.discard(executor_);
             break;
         }
@@ -214,7 +216,7 @@ void Session<SceneType, M, E>::run(Budget budget) {
         }
         if (fraction >= 1) break;
     }
-    statistics_.cancelled = settings_.stop.stop_requested();
+    statistics_.cancelled = pause.stop_requested();
     statistics_.seconds += std::chrono::duration<double>(Clock::now() - begin).count();
     if constexpr (requires { state_->value.statistics(); }) statistics_.of_method = state_->value.statistics();
 }

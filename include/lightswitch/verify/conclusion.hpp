@@ -58,6 +58,8 @@ inline std::string disagreement(const Subject& s) {
 inline void answer(Subject& s, const VerifyOptions& options) {
     using Answer = Verdict::Answer;
     Verdict& v = s.verdict;
+    v.answer = Answer::undecided;
+    v.first_wrong_length = 0;
     const auto any = [&](auto property) { return std::any_of(v.parts.begin(), v.parts.end(), property); };
     const bool alarm = any([](const auto& part) { return part.disagrees; });
     const bool lasts = any([](const auto& part) { return part.disagrees && part.p < 0.01; });

@@ -72,8 +72,11 @@ public:
             while (!schedule.set_goals(look, target) && !schedule.exhausted()) target *= 1.5;
             schedule.draw();
             const bool last = schedule.over() || schedule.exhausted();
-            for (Subject& s : subjects_)
-                if (!s.decided) judge(s, look, last, schedule);
+            for (Subject& s : subjects_) {
+                if (s.decided) continue;
+                judge(s, look, last, schedule);
+                if (options_.looked) options_.looked(detail::conclude(s, options_));
+            }
             if (last || std::all_of(subjects_.begin(), subjects_.end(), [](const Subject& s) { return s.decided; }))
                 break;
         }

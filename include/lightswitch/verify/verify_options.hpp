@@ -11,6 +11,8 @@
 
 namespace lightswitch {
 
+struct Verdict;
+
 /// What an observer of `verify` is told.
 struct VerifyProgress {
     double seconds = 0;
@@ -41,6 +43,8 @@ struct VerifyOptions {
     int threads = 0;            ///< 0: as many as the machine has
     std::stop_token stop = {};  ///< ends the run early, with a verdict on what there is
     std::function<void(const VerifyProgress&)> observer = {};  ///< called as images are made
+    /// Called after every look at a method, with what would be its verdict if the run ended then.
+    std::function<void(const Verdict&)> looked = {};
 };
 
 }  // namespace lightswitch

@@ -1,0 +1,122 @@
+#pragma once
+
+// What a window shows: one scene, what the methods have made of it so far, and what is known about them.
+
+#include "../load.hpp"
+#include "../program.hpp"
+#include "background.hpp"
+#include "camera_control.hpp"
+
+#include <lightswitch/method/any_method.hpp>
+#include <lightswitch/render/interactive.hpp>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lightswitch::program {
+
+/// How the error of a method fell: root mean square over the image's mean.
+struct ErrorPoint {
+    double seconds = 0;
+    std::uint64_t samples = 0;
+    double estimated = 0;  ///< by the spread of the method's own samples
+    double measured = 0;   ///< by its difference from the reference as it is now; 0 when that is not known
+};
+
+/// A method of the window. Its number is its place in the list of all methods, and its key.
+struct LiveMethod {
+    AnyMethod method;
+    std::string name;
+    Kind kind = Kind::unbiased;
+    std::shared_ptr<const Snapshot> snapshot;  ///< the newest; of the present view, or empty
+    std::vector<ErrorPoint> curve;
+    std::vector<std::shared_ptr<const Snapshot>> kept;  ///< those of the curve whose error can still be measured
+    bool unsaved = false;                               ///< has been worked on for a while, and was not saved since
+};
+
+/// The words and numbers of a verdict while it is being found.
+struct VerdictSoFar {
+    std::shared_ptr<const Verdict> verdict;  ///< empty before the first look
+    VerifyProgress progress;
+    std::string problem;  ///< why there is none
+    bool done = false;
+};
+
+/// Renders, compares and verifies in the background. To be used from one thread; `wake` is called on others when there
+/// is something new.
+class LiveScene {
+public:
+    LiveScene(LoadedScene loaded, const ViewOptions& options, std::function<void()> wake);
+
+    const SceneSummary& summary() const { return summary_; }
+    const FilmDescription& film() const { return film_; }
+    std::string scene_type() const;
+    double scene_bytes() const;
+    const std::vector<LiveMethod>& methods() const { return methods_; }
+    std::size_t shown() const { return shown_; }
+    const LiveMethod& shown_method() const { return methods_[shown_]; }
+    /// The method that the shown one is compared with.
+    std::optional<std::size_t> reference() const { return reference_; }
+    const LiveMethod* reference_method() const { return reference_ ? &methods_[*reference_] : nullptr; }
+
+    void show(std::size_t method);
+    void compare_with(std::optional<std::size_t> method);
+    /// Whether the reference goes on while another method is looked at.
+    bool in_background() const { return in_background_; }
+    void set_in_background(bool yes);
+    bool held() const { return held_; }
+    void hold(bool yes);
+
+    /// To be changed at will; `update` follows it.
+    CameraControl camera;
+
+    /// Fetches what is new. True when anything has changed that a window would show.
+    bool update();
+
+    /// The verdict about the shown method by the reference; nothing when it is not asked for.
+    std::optional<VerdictSoFar> verdict() const;
+    bool verifies() const { return verifies_; }
+    void set_verifies(bool yes);
+
+    /// The method whose error will be smallest at equal time, as far as it is known; nothing when it is not.
+    std::optional<std::size_t> best() const;
+
+    /// Albedo, normal and depth as layers; empty before they are there. Asking makes them.
+    std::shared_ptr<const std::vector<Layer>> outputs();
+
+    /// The image as `render` would save it.
+    Image image_to_save(std::size_t method) const;
+    void saved(std::size_t method) { methods_[method].unsaved = false; }
+    /// Names of methods with work that would be lost.
+    std::vector<std::string> unsaved() const;
+
+    std::shared_ptr<const AnyScene> scene() const { return live_.scene(); }
+    const Settings& settings() const { return settings_; }
+
+private:
+    void choose();
+    void verify_anew();
+    void take(LiveMethod& method, std::shared_ptr<const Snapshot> snapshot);
+    void measure_curves();
+
+    SceneSummary summary_;
+    FilmDescription film_;
+    Settings settings_;
+    std::function<void()> wake_;
+    std::vector<LiveMethod> methods_;
+    std::size_t shown_ = 0;
+    std::optional<std::size_t> reference_;
+    bool in_background_ = true, held_ = false, verifies_ = false;
+    std::uint64_t camera_changes_ = 0, view_ = 0;
+    std::uint64_t measured_with_ = 0;  // samples of the reference
+    Background<VerdictSoFar> verdict_;
+    std::uint64_t verdict_view_ = 0;
+    std::chrono::steady_clock::time_point moved_{};
+    Background<std::vector<Layer>> outputs_;
+    std::optional<std::uint64_t> outputs_view_;
+    InteractiveRender<AnyScene> live_;
+};
+
+}  // namespace lightswitch::program

@@ -1,0 +1,334 @@
+"""window.py PROGRAM: uses the window of `lightswitch view` on a display of its own, with keys and mouse.
+
+Exit status: 0 when all holds, 1 when not, 77 when Xvfb or xdotool are missing. With a second argument, a directory, it
+leaves pictures of the screen there.
+"""
+
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import time
+import zlib
+
+from display import Display, color, write_png
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+CBOX = os.path.join(HERE, "..", "data", "cbox", "cbox.xml")
+METHODS = ["silhouette", "phong", "path", "path-nee", "light", "bdpt", "photon", "vcm", "mlt"]
+VIEWS = ["image", "side by side", "split", "flicker", "difference", "relative difference", "significance", "albedo",
+         "normal", "depth"]
+LINE = (255, 210, 80)  # of the split view
+failures = []
+
+
+def check(condition, what):
+    if not condition:
+        failures.append(what)
+        print("FAILED:", what, flush=True)
+
+
+def read_png(path):
+    """Rows of (red, green, blue)."""
+    with open(path, "rb") as file:
+        data = file.read()
+    width, height = int.from_bytes(data[16:20], "big"), int.from_bytes(data[20:24], "big")
+    packed, at = b"", 8
+    while at < len(data):
+        length, kind = int.from_bytes(data[at:at + 4], "big"), data[at + 4:at + 8]
+        if kind == b"IDAT":
+            packed += data[at + 8:at + 8 + length]
+        at += 12 + length
+    raw, stride, rows, last = zlib.decompress(packed), 3 * width, [], bytes(3 * width)
+    for y in range(height):
+        kind, row = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
+        for i in range(stride):
+            a, b, c = (row[i - 3] if i >= 3 else 0), last[i], (last[i - 3] if i >= 3 else 0)
+            nearest = min((abs(b - c), 0, a), (abs(a - c), 1, b), (abs(a + b - 2 * c), 2, c))[2]
+            row[i] = (row[i] + [0, a, b, (a + b) // 2, nearest][kind]) & 255
+        rows.append([tuple(row[3 * x:3 * x + 3]) for x in range(width)])
+        last = row
+    return rows
+
+
+class Window:
+    """The program on a display, in a directory where it may write."""
+
+    def __init__(self, display, program, directory, *arguments):
+        self.display, self.directory = display, directory
+        self.stats = os.path.join(directory, "stats.json")
+        if os.path.exists(self.stats):
+            os.remove(self.stats)
+        self.log = open(os.path.join(directory, "output.txt"), "w+")
+        self.process = display.start([program, "view", *arguments, "--stats", self.stats, "--window", "900x600"],
+                                     cwd=directory, stdout=self.log, stderr=subprocess.STDOUT)
+        display.wait_for_title(bool)
+
+    def wait(self, text, seconds=60):
+        return self.display.wait_for_title(lambda title: text in title, seconds)
+
+    def settle(self):
+        """Until what keys have done can be seen."""
+        time.sleep(0.7)
+
+    def output(self):
+        self.log.flush()
+        with open(self.log.name) as file:
+            return file.read()
+
+    def save(self, keys, ending):
+        """Saves under the name that is proposed; returns the new file."""
+        before = set(os.listdir(self.directory))
+        self.display.key(keys)
+        self.settle()
+        self.display.key("Return")
+        end = time.monotonic() + 20
+        while time.monotonic() < end:
+            new = [name for name in set(os.listdir(self.directory)) - before if name.endswith(ending)]
+            if new:
+                self.settle()
+                return os.path.join(self.directory, new[0])
+            time.sleep(0.05)
+        raise AssertionError(f"{keys} wrote no {ending}")
+
+    def quit(self):
+        self.display.key("ctrl+q")
+        check(self.process.wait(timeout=30) == 0, "the program ends with success")
+        with open(self.stats) as file:
+            return json.load(file)
+
+
+def run(program, *arguments):
+    return subprocess.run([program, *arguments], capture_output=True, text=True)
+
+
+def largest_difference(program, a, b):
+    result = run(program, "compare", a, b)
+    check(result.returncode == 0, "images can be compared: " + result.stderr)
+    found = re.search(r"max \|A - B\|\s+(\S+)", result.stdout)
+    return found and float(found.group(1))
+
+
+def check_methods(program, display, directory, pictures):
+    window = Window(display, program, directory, CBOX, "--size", "60x60", "--spp", "4", "--exposure", "1")
+    window.wait("path-nee, 4 samples, image")
+    window.settle()
+
+    # The image of so many samples is the one that render makes, and a picture of it has the same bytes.
+    exr, png = window.save("ctrl+e", ".exr"), window.save("ctrl+s", ".png")
+    reference, picture = os.path.join(directory, "render.exr"), os.path.join(directory, "render.png")
+    rendered = run(program, "render", CBOX, "--size", "60x60", "--spp", "4", "--exposure", "1", "--output", reference,
+                   "--output", picture)
+    check(rendered.returncode == 0, "render works: " + rendered.stderr)
+    check(largest_difference(program, exr, reference) == 0, "the saved image is what render makes, bit for bit")
+    with open(png, "rb") as a, open(picture, "rb") as b:
+        check(a.read() == b.read(), "the saved picture is what render makes")
+
+    # What is on the screen is that picture, enlarged: in the middle row its runs of equal colours follow each other.
+    display.key("h")
+    window.settle()
+    width, height, rows = display.pixels()
+    wanted = read_png(picture)
+    shown = [color(rows, x, 300) for x in range(900)]
+    found = any(run_of(wanted[y], shown) for y in range(25, 35))
+    check(found, "the screen shows the picture's colours")
+    display.key("h")
+
+    # Every key has its method at once, and what was made stays.
+    for i, name in enumerate(METHODS):
+        begin = time.monotonic()
+        display.key(str(i))
+        window.wait(f" {name}, ")
+        check(time.monotonic() - begin < 5, f"the window switches to {name} at once")
+        window.wait(f" {name}, 4 samples")
+    display.key("3")
+    window.wait("path-nee,")
+    check("4 samples" in display.title(), "switching back loses nothing: " + display.title())
+
+    # A file that exists is not proposed again, nor overwritten.
+    again = window.save("ctrl+s", ".png")
+    check(again != png and os.path.exists(again), "another name is proposed")
+    stats = window.quit()
+    check(set(stats["methods"]) == set(METHODS), "the numbers tell of all methods")
+    check(all(m["samples_per_pixel"] == 4 for m in stats["methods"].values()), "each of them rested after 4 samples")
+
+
+def run_of(wanted, shown):
+    """Whether the colours of `wanted`, each repeated some times, are somewhere in `shown`."""
+    def squeeze(colors):
+        return [c for i, c in enumerate(colors) if i == 0 or c != colors[i - 1]]
+    wanted, shown = squeeze(wanted)[5:-5], squeeze(shown)
+    return any(shown[i:i + len(wanted)] == wanted for i in range(len(shown) - len(wanted) + 1))
+
+
+def check_views(program, display, directory, pictures):
+    window = Window(display, program, directory, "cornell-spheres", "--size", "48x48", "--spp", "64", "--method", "light")
+    window.wait("light, 64 samples")
+    display.key("F6")
+    window.settle()
+    check("image" in display.title(), "without a reference there is no difference")
+    display.key("shift+3")
+    for i, view in enumerate(VIEWS):
+        display.key(f"F{i + 2}")
+        window.wait(view)
+        window.settle()
+        if view.startswith("diff"):
+            time.sleep(3)  # both images
+        if pictures:
+            width, height, rows = display.pixels()
+            write_png(os.path.join(pictures, view.replace(" ", "-") + ".png"), rows[:600], 900)
+        if view == "difference":
+            # path-nee sees what is in mirrors and through glass, light does not: blue is where light has less.
+            width, height, rows = display.pixels()
+            colors = [color(rows, x, y) for y in range(40, 500, 3) for x in range(0, 540, 3)]
+            check(sum(b > 150 and r < 110 for r, g, b in colors) > 200, "the difference is blue where light has less")
+            check(sum(min(c) > 230 for c in colors) > 1000, "and white where there is none")
+
+    # The line of the split view is where the mouse has put it.
+    def line_column():
+        width, height, rows = display.pixels()
+        return [x for x in range(560) if all(color(rows, x, y) == LINE for y in (100, 250, 400))]
+    display.key("F4")
+    display.do("mousemove", 20, 300)
+    window.settle()
+    before = line_column()
+    check(before and 260 < before[0] < 300, f"the line is in the middle at first: {before}")
+    display.do("mousemove", before[0] if before else 280, 300)
+    window.settle()
+    display.do("mousedown", 1)
+    window.settle()
+    for x in range(270, 139, -10):
+        display.do("mousemove", x, 300)
+        time.sleep(0.02)
+    window.settle()
+    display.do("mouseup", 1)
+    window.settle()
+    after = line_column()
+    check(after and abs(after[0] - 140) <= 3, f"the line follows the mouse: {after}")
+
+    # A pixel is picked with a click, and large after turning the wheel.
+    display.key("F2")
+    display.do("mousemove", 280, 300)
+    window.settle()
+    for _ in range(16):
+        display.do("click", 4)
+    display.do("click", 1)
+    window.settle()
+    width, height, rows = display.pixels()
+    colors = {color(rows, x, y) for x in range(20, 540, 20) for y in range(60, 560, 20)}
+    check(any(color(rows, x, 300) == LINE or color(rows, 280, x) == LINE for x in range(30, 560)), "a picked pixel is marked")
+    if pictures:
+        write_png(os.path.join(pictures, "zoomed.png"), rows[:600], 900)
+
+    # Help, and away with it.
+    plain = display.pixels()[2]
+    display.key("question")
+    window.settle()
+    with_help = display.pixels()[2]
+    check(with_help != plain, "? shows the keys")
+    if pictures:
+        write_png(os.path.join(pictures, "help.png"), with_help[:600], 900)
+    display.key("Escape")
+
+    # The verdict comes by itself; light lacks what is seen in mirrors, so it is about the rest or undecided.
+    window.quit()
+
+
+def check_camera(program, display, directory, pictures):
+    window = Window(display, program, directory, CBOX, "--size", "40x40", "--spp", "8")
+    window.wait("8 samples")
+    window.settle()
+    for keys in ("Right", "Up", "period"):
+        display.key(keys)
+    display.do("mousemove", 280, 300)
+    window.settle()
+    display.do("mousedown", 3)
+    for x in range(280, 300, 4):
+        display.do("mousemove", x, 305)
+        time.sleep(0.05)
+    display.do("mouseup", 3)
+    window.wait("8 samples")
+    window.settle()
+    window.wait("8 samples")
+    exr = window.save("ctrl+e", ".exr")
+    display.key("ctrl+c")
+    display.key("ctrl+shift+c")
+    window.settle()
+    window.quit()
+    output = window.output()
+    sensor = re.search(r"<sensor.*</sensor>", output, re.DOTALL)
+    check(sensor is not None, "the camera is printed")
+    check("lightswitch::CameraDescription camera{" in output, "as C++, too")
+    with open(CBOX) as file:
+        scene = file.read()
+    moved = re.sub(r"<sensor.*</sensor>", sensor.group(0) if sensor else "", scene, flags=re.DOTALL)
+    path = os.path.join(directory, "moved.xml")
+    with open(path, "w") as file:
+        file.write(moved)
+    rendered = os.path.join(directory, "moved.exr")
+    result = run(program, "render", path, "--path", os.path.dirname(CBOX), "--spp", "8", "--output", rendered)
+    check(result.returncode == 0, "the copied camera can be read: " + result.stderr)
+    check(largest_difference(program, exr, rendered) == 0, "the copied camera is the window's, bit for bit")
+    original = os.path.join(directory, "original.exr")
+    run(program, "render", CBOX, "--size", "40x40", "--spp", "8", "--output", original)
+    refused = run(program, "compare", exr, original)
+    check(refused.returncode == 2 and "camera" in refused.stderr, "it is not the scene's own camera")
+
+
+def check_scenes(program, display, directory, pictures):
+    window = Window(display, program, directory)  # without a scene
+    display.key("3")
+    display.key("ctrl+o")
+    window.settle()
+    display.do("type", "no-such-scene")
+    display.key("Return")
+    window.settle()
+    display.key("ctrl+o")
+    window.settle()
+    display.do("type", "--clearmodifiers", "furnace")
+    # The name that was there is still there.
+    display.key("ctrl+a")
+    display.do("type", "furnace")
+    display.key("Return")
+    window.wait("furnace: path-nee")
+    display.key("ctrl+o")
+    window.settle()
+    display.key("ctrl+a")
+    display.do("type", CBOX)
+    display.key("Return")
+    window.wait("cbox.xml: path-nee")
+    check(window.process.poll() is None, "the program goes on")
+    window.quit()
+
+    nowhere = dict(os.environ)
+    nowhere.pop("DISPLAY", None)
+    nowhere.pop("WAYLAND_DISPLAY", None)
+    result = subprocess.run([program, "view", "furnace"], env=nowhere, capture_output=True, text=True)
+    check(result.returncode == 2 and "display" in result.stderr, "without a display there is an error: " + result.stderr)
+    result = subprocess.run([program, "view", "furnace", "--method", "pth"], env=nowhere, capture_output=True, text=True)
+    check(result.returncode == 2 and "path" in result.stderr, "a method that is not there is an error")
+
+
+def main():
+    program = os.path.abspath(sys.argv[1])
+    pictures = sys.argv[2] if len(sys.argv) > 2 else None
+    missing = Display.missing()
+    if missing:
+        print("skipped: no", " and no ".join(missing))
+        return 77
+    for part in (check_methods, check_views, check_camera, check_scenes):
+        display = Display()
+        try:
+            with tempfile.TemporaryDirectory() as directory:
+                part(program, display, directory, pictures)
+        except (AssertionError, subprocess.TimeoutExpired, OSError) as error:
+            check(False, f"{part.__name__}: {error}")
+        finally:
+            display.close()
+    print(f"{len(failures)} failures")
+    return 1 if failures else 0
+
+
+sys.exit(main())
