@@ -2,6 +2,7 @@
 // methods are called through a virtual function, which the check must find.
 
 #include <lightswitch/lightswitch.hpp>
+#include <lightswitch/render/interactive.hpp>
 
 #include <memory>
 
@@ -45,6 +46,13 @@ int main(int argc, char** argv) {
         std::visit([&](const auto& s, const auto& chosen) { sum += ls::render(s, chosen, {.samples = 1}).mean().x; },
                    scene, method);
     });
+    // What a window does.
+    ls::InteractiveRender live(scene, ls::stock::describe(name)->camera);
+    ls::for_each_method([&](const auto& m) { live.add(ls::AnyMethod(m)); });
+    live.limit(1);
+    live.show(3);
+    live.wait();
+    sum += live.snapshot(3)->image.mean().x;
 #endif
     return sum > 0 ? 0 : 1;
 }

@@ -1,7 +1,7 @@
 """window.py PROGRAM: uses the window of `lightswitch view` on a display of its own, with keys and mouse.
 
 Exit status: 0 when all holds, 1 when not, 77 when Xvfb or xdotool are missing. With a second argument, a directory, it
-leaves pictures of the screen there.
+leaves pictures of the screen there. `window.py PROGRAM --picture docs/window.png` makes the picture of the README.
 """
 
 import json
@@ -212,12 +212,12 @@ def check_views(program, display, directory, pictures):
     display.key("F2")
     display.do("mousemove", 280, 300)
     window.settle()
-    for _ in range(16):
+    for _ in range(8):
         display.do("click", 4)
+        time.sleep(0.05)
     display.do("click", 1)
     window.settle()
     width, height, rows = display.pixels()
-    colors = {color(rows, x, y) for x in range(20, 540, 20) for y in range(60, 560, 20)}
     check(any(color(rows, x, 300) == LINE or color(rows, 280, x) == LINE for x in range(30, 560)), "a picked pixel is marked")
     if pictures:
         write_png(os.path.join(pictures, "zoomed.png"), rows[:600], 900)
@@ -264,7 +264,8 @@ def check_camera(program, display, directory, pictures):
     with open(CBOX) as file:
         scene = file.read()
     moved = re.sub(r"<sensor.*</sensor>", sensor.group(0) if sensor else "", scene, flags=re.DOTALL)
-    path = os.path.join(directory, "moved.xml")
+    os.mkdir(os.path.join(directory, "moved"))
+    path = os.path.join(directory, "moved", os.path.basename(CBOX))  # images of other scenes are not compared
     with open(path, "w") as file:
         file.write(moved)
     rendered = os.path.join(directory, "moved.exr")
@@ -287,15 +288,11 @@ def check_scenes(program, display, directory, pictures):
     window.settle()
     display.key("ctrl+o")
     window.settle()
-    display.do("type", "--clearmodifiers", "furnace")
-    # The name that was there is still there.
-    display.key("ctrl+a")
     display.do("type", "furnace")
     display.key("Return")
     window.wait("furnace: path-nee")
     display.key("ctrl+o")
     window.settle()
-    display.key("ctrl+a")
     display.do("type", CBOX)
     display.key("Return")
     window.wait("cbox.xml: path-nee")
@@ -311,8 +308,32 @@ def check_scenes(program, display, directory, pictures):
     check(result.returncode == 2 and "path" in result.stderr, "a method that is not there is an error")
 
 
+def make_picture(program, display, path):
+    """The picture of the README: two methods side by side, after a while."""
+    with tempfile.TemporaryDirectory() as directory:
+        process = display.start([program, "view", "cornell-spheres", "--size", "512x512", "--method", "vcm", "--against",
+                                 "path-nee", "--window", "1280x800"], cwd=directory)
+        display.wait_for_title(bool)
+        for method in ("8", "5", "7"):
+            time.sleep(20)
+            display.key(method)
+        display.key("F4")
+        time.sleep(60)
+        display.do("mousemove", 640, 790)
+        time.sleep(1)
+        width, height, rows = display.pixels()
+        write_png(path, rows, width)
+        process.terminate()
+        process.wait()
+
+
 def main():
     program = os.path.abspath(sys.argv[1])
+    if len(sys.argv) == 4 and sys.argv[2] == "--picture":
+        display = Display()
+        make_picture(program, display, sys.argv[3])
+        display.close()
+        return 0
     pictures = sys.argv[2] if len(sys.argv) > 2 else None
     missing = Display.missing()
     if missing:

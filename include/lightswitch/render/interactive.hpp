@@ -22,8 +22,8 @@ namespace lightswitch {
 ///
 /// After a move the first pictures are coarse, so that something is there within a moment, whatever the image's size.
 /// Every image is what `render` makes of as many samples, bit for bit, however often methods were switched in between.
-/// All members may be called from any thread; none of them waits for the renderer but the destructor, which ends the
-/// iteration that is under way.
+/// All members may be called from any thread; none of them waits for the renderer but `wait` and the destructor, which
+/// ends the iteration that is under way. It can be neither copied nor moved.
 template <class SceneType>
 class InteractiveRender {
 public:
@@ -41,8 +41,6 @@ public:
     ~InteractiveRender() {
         change(Interruption::abandon, [&] { ending_ = true; });
     }
-    InteractiveRender(const InteractiveRender&) = delete;
-    InteractiveRender& operator=(const InteractiveRender&) = delete;
 
     /// A further method, or `std::variant` of methods, which is not shown yet; returns its number, counted from 0.
     /// `coarse` makes the coarse pictures.

@@ -22,7 +22,10 @@ void Interface::make_commands() {
     const auto there = [this] { return live_ != nullptr; };
     const auto compared = [this] { return live_ && live_->reference(); };
 
-    add("Scene", "Open ...", "Ctrl+O", GLFW_KEY_O, control, [this] { opens_ = true; });
+    add("Scene", "Open ...", "Ctrl+O", GLFW_KEY_O, control, [this] {
+        opens_ = true;
+        open_name_.clear();
+    });
     add(
         "Scene", "Save picture (.png) ...", "Ctrl+S", GLFW_KEY_S, control, [this] { begin_save(".png"); }, {}, there);
     add(

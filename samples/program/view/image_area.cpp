@@ -192,9 +192,17 @@ void Interface::draw_texture(const Texture& texture, const Place& place) {
         const float x = place.left + static_cast<float>(picked_->first) * place.size;
         const float y = place.top + static_cast<float>(picked_->second) * place.size;
         const float out = std::max(0.0f, (9 - place.size) / 2);
+        const auto frame = [&](float distance, ImU32 frame_color) {
+            const float x0 = std::round(x - out - distance), x1 = std::round(x + place.size + out + distance);
+            const float y0 = std::round(y - out - distance), y1 = std::round(y + place.size + out + distance);
+            list.AddRectFilled({x0, y0}, {x1, y0 + 1}, frame_color);
+            list.AddRectFilled({x0, y1 - 1}, {x1, y1}, frame_color);
+            list.AddRectFilled({x0, y0}, {x0 + 1, y1}, frame_color);
+            list.AddRectFilled({x1 - 1, y0}, {x1, y1}, frame_color);
+        };
         list.PushClipRect({place.x, place.y}, {place.x + place.width, place.y + place.height}, true);
-        list.AddRect({x - out - 1, y - out - 1}, {x + place.size + out + 1, y + place.size + out + 1},
-                     IM_COL32(255, 210, 80, 255));
+        frame(1, IM_COL32(255, 210, 80, 255));
+        frame(2, IM_COL32(0, 0, 0, 255));
         list.PopClipRect();
     }
 }

@@ -107,7 +107,7 @@ private:
     void pick(int x, int y);
     void auto_expose();
     void next_non_finite();
-    void tell(std::string message) { message_ = std::move(message); }
+    void tell(std::string message);
     std::string scene_name() const;
 
     Window& window_;
@@ -136,6 +136,7 @@ private:
     float legend_scale_ = 0;
     int legend_width_ = 0;
 
+    std::chrono::steady_clock::time_point told_{};
     std::string message_, save_name_, save_problem_, open_name_;
     bool saves_ = false, opens_ = false;
     std::future<LoadedScene> loading_;

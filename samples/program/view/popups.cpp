@@ -176,7 +176,15 @@ void Interface::open(const std::string& scene) {
     });
 }
 
+void Interface::tell(std::string message) {
+    message_ = std::move(message);
+    told_ = std::chrono::steady_clock::now();
+}
+
 void Interface::message_popup() {
+    // Time to read it.
+    const auto time = std::chrono::seconds(4) + std::chrono::milliseconds(60) * message_.size();
+    if (std::chrono::steady_clock::now() - told_ > time) message_.clear();
     if (message_.empty()) return;
     const ImGuiIO& io = ImGui::GetIO();
     ImGui::SetNextWindowPos({10 * window_.scale(), io.DisplaySize.y - 2 * ImGui::GetFrameHeight()}, ImGuiCond_Always,
