@@ -33,6 +33,7 @@ run_samples() {
   run ../07_own_light
   run ../08_own_camera
   run ../09_own_methods
+  if [ -x ../10_own_window ] && [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ]; then run ../10_own_window --frames 20; fi
   run ../lightswitch compare spheres.exr spheres-path.exr --report spheres.html
   run ../lightswitch verify furnace --methods path-nee,bdpt --report furnace-verdict.html
 
