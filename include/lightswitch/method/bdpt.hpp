@@ -22,6 +22,7 @@ struct Strategy {
 struct Bdpt {
     static constexpr std::string_view name = "bdpt";
     static constexpr Kind kind = Kind::unbiased;
+    static constexpr Dependence dependence = Dependence::pixel;
     static constexpr PathClasses cannot_make{.mirrored_dirac_caustic = true};
     static constexpr PathClasses can_leave_out{.dirac_light = true, .dirac_caustic = true, .mirrored = true};
 

@@ -107,12 +107,21 @@ inline Contribution meet_environment(const auto& scene, const auto& path) {
             z.point.segment_to(y.point.position, y.point.normal, y.point.offset)};
 }
 
+/// What is told of a contribution that counts as `value`: by which its weight is known, whatever the method makes of it.
+[[gnu::always_inline]] inline Contributed told(Finding how, const Contribution& found, const Rgb& value, int s, int t,
+                                               const Vec2& film = Vec2(0)) {
+    const float weight = max_component(value) / max_component(found.value);
+    return {how, s, t, weight, value, film};
+}
+
 /// Adds the light that comes to the camera straight from lights: paths of length 1.
 void see_lights(auto& frame) {
     const auto& scene = frame.scene();
     frame.pixels([&](const Ray& ray, auto&) {
         const auto hit = scene.intersect(ray);
-        return hit ? scene.emitted(*hit, hit->wo) : scene.environment(ray.direction);
+        const Rgb found = hit ? scene.emitted(*hit, hit->wo) : scene.environment(ray.direction);
+        tell(scene, Contributed{hit ? Finding::light_met : Finding::environment_met, 0, 2, 1, found});
+        return found;
     });
 }
 
@@ -131,7 +140,10 @@ void splat_light_subpath(const auto& scene, auto& sampler, auto& splatter, const
         const auto view = camera.view(y.point, camera.has_lens() ? sampler.next_2d() : Vec2(0.5f));
         if (!view) return;
         const Connection seen = connect_to_camera(scene, y, *view, light_paths, merge_weights);
-        if (visible(scene, seen)) splatter.splat(view->pixel, count(seen, y.edges + 1, 1));
+        if (!visible(scene, seen)) return;
+        const Rgb value = count(seen, y.edges + 1, 1);
+        tell(scene, told(Finding::seen, seen, value, y.edges + 1, 1, view->pixel));
+        splatter.splat(view->pixel, value);
     });
 }
 
@@ -148,40 +160,45 @@ Rgb gather_camera_subpath(const auto& scene, const Ray& ray, auto& sampler, cons
     Rgb sum(0);
     float gathered = 0;
     RandomSequence roulette(sampler.next_2d());
-    const auto add = [&](const Contribution& found, int s, int t) {
+    tell(scene, ray);
+    const auto add = [&](const Contribution& found, Finding how, int s, int t) {
         gathered += max_component(found.value) * found.weight;
-        sum += count(found, s, t);
+        const Rgb value = count(found, s, t);
+        tell(scene, told(how, found, value, s, t));
+        sum += value;
     };
-    const auto try_connection = [&](Connection connection, int s, int t) {
+    const auto try_connection = [&](Connection connection, Finding how, int s, int t) {
         const float adds = max_component(connection.value) * connection.weight;
         if (adds < worth * gathered) {
             const float probability = adds / (worth * gathered);
             if (roulette.next_float() >= probability) return;
             connection.value /= probability;
         }
-        if (visible(scene, connection)) add(connection, s, t);
+        if (visible(scene, connection)) add(connection, how, s, t);
     };
 
     CameraSubpath<point_of<decltype(scene)>> path(ray, light_paths, merge_weights);
     const auto& z = path.vertex();
     for (;;) {
         if (!path.advance(scene)) {
-            add(meet_environment(scene, path), 0, z.edges + 1);
+            add(meet_environment(scene, path), Finding::environment_met, 0, z.edges + 1);
             return sum;
         }
-        add(meet_light(scene, path), 0, z.edges + 1);
+        add(meet_light(scene, path), Finding::light_met, 0, z.edges + 1);
         if (z.edges == limits.max_depth) return sum;
         const Vec2 direction = sampler.next_2d(), choices = sampler.next_2d(), on_light = sampler.next_2d();
         if (connectable(scene, z.point)) {
             // One number chooses the light and the lobe: they enter different terms of the sum.
             const Arrival at_z(z.point);
-            try_connection(connect_to_light(scene, z, at_z, choices.x, on_light, merge_weights, limits.left_out), 1,
-                           z.edges + 1);
+            try_connection(connect_to_light(scene, z, at_z, choices.x, on_light, merge_weights, limits.left_out),
+                           Finding::light_sampled, 1, z.edges + 1);
             for (const auto& y : light_path) {
                 if (limits.max_depth >= 0 && y.edges + 1 + z.edges > limits.max_depth) break;
-                try_connection(connect(scene, y, z, at_z, merge_weights), y.edges + 1, z.edges + 1);
+                try_connection(connect(scene, y, z, at_z, merge_weights), Finding::connected, y.edges + 1, z.edges + 1);
             }
-            sum += at_vertex(z, at_z);
+            const Rgb merged = at_vertex(z, at_z);
+            tell(scene, Contributed{Finding::merged, 0, z.edges + 1, 1, merged});
+            sum += merged;
         }
         if (!path.scatter(scene, direction, choices, limits.rr_depth)) return sum;
         if (limits.left_out.mirrored && z.edges == 1 && path.left_specularly()) return sum;

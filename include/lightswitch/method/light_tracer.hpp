@@ -13,6 +13,7 @@ namespace lightswitch {
 struct LightTracer {
     static constexpr std::string_view name = "light";
     static constexpr Kind kind = Kind::unbiased;
+    static constexpr Dependence dependence = Dependence::iteration;
     static constexpr PathClasses cannot_make{.mirrored_dirac_caustic = true, .mirrored = true};
 
     int max_depth = PathLength{}.max_depth;  ///< see `PathLength`

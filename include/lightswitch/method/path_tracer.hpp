@@ -25,11 +25,15 @@ struct PathTracer {
         for (int depth = 1;; ++depth) {
             const auto hit = scene.intersect(ray);
             if (!hit) {
-                sum += throughput * scene.environment(ray.direction);
+                const Rgb found = throughput * scene.environment(ray.direction);
+                tell(scene, Contributed{Finding::environment_met, 0, depth + 1, 1, found});
+                sum += found;
                 break;
             }
             const Vec3 wo = -ray.direction;
-            sum += throughput * scene.emitted(*hit, wo);
+            const Rgb found = throughput * scene.emitted(*hit, wo);
+            tell(scene, Contributed{Finding::light_met, 0, depth + 1, 1, found});
+            sum += found;
             if (depth == max_depth) break;
 
             const Vec2 direction = sampler.next_2d(), choices = sampler.next_2d();
@@ -40,6 +44,7 @@ struct PathTracer {
             if (!scattered) break;
             throughput *= scattered->weight;
             eta *= scattered->eta;
+            tell_bounce(scene, *scattered, basis.to_world(scattered->wi), throughput, eta, depth, rr_depth, choices.y);
             if (!survives_roulette(throughput, eta, depth, rr_depth, choices.y)) break;
             ray = hit->spawn(basis.to_world(scattered->wi));
         }

@@ -27,13 +27,21 @@ struct PathTracerNee {
             const auto hit = scene.intersect(ray);
             if (!hit) {
                 const Rgb radiance = scene.environment(ray.direction);
-                sum += throughput * radiance * sampled.weight_of_environment(scene, ray.direction);
+                const float weight = sampled.weight_of_environment(scene, ray.direction);
+                const Rgb found = throughput * radiance * weight;
+                tell(scene, Contributed{Finding::environment_met, 0, depth + 1, weight, found});
+                sum += found;
                 break;
             }
             const Vec3 wo = -ray.direction;
             if (hit->light) {
                 const Rgb radiance = scene.emitted(*hit, wo);
-                if (!is_black(radiance)) sum += throughput * radiance * sampled.weight(scene, *hit);
+                if (!is_black(radiance)) {
+                    const float weight = sampled.weight(scene, *hit);
+                    const Rgb found = throughput * radiance * weight;
+                    tell(scene, Contributed{Finding::light_met, 0, depth + 1, weight, found});
+                    sum += found;
+                }
             }
             if (depth == max_depth) break;
 
@@ -55,12 +63,15 @@ struct PathTracerNee {
             // Traced after both directions are known: the processor works on the next ray meanwhile.
             if (light.pdf.value > 0 && !is_black(scattering.value) && !scene.occluded(light.visibility)) {
                 const float weight = light.dirac ? 1 : power_heuristic(light.pdf, scattering.pdf);
-                sum +=
+                const Rgb found =
                     throughput * scattering.value * light.radiance * (std::abs(local_wi.z) / light.pdf.value * weight);
+                tell(scene, Contributed{Finding::light_sampled, 1, depth + 1, weight, found});
+                sum += found;
             }
             if (!scattered) break;
             throughput *= scattered->weight;
             eta *= scattered->eta;
+            tell_bounce(scene, *scattered, basis.to_world(scattered->wi), throughput, eta, depth, rr_depth, choices.y);
             if (!survives_roulette(throughput, eta, depth, rr_depth, choices.y)) break;
             sampled.leave(*hit, scattered->pdf, !scattered->specular);
             ray = hit->spawn(basis.to_world(scattered->wi));

@@ -2,6 +2,7 @@
 
 #include <lightswitch/bsdf/bsdf.hpp>
 #include <lightswitch/render/method.hpp>
+#include <lightswitch/render/recording.hpp>
 #include <lightswitch/scene/scene.hpp>
 
 namespace lightswitch {
@@ -20,7 +21,11 @@ struct Phong {
 
     Rgb radiance(const auto& scene, const Ray& ray, auto&) const {
         const auto hit = scene.intersect(ray);
-        if (!hit) return scene.environment(ray.direction);
+        if (!hit) {
+            const Rgb found = scene.environment(ray.direction);
+            tell(scene, Contributed{Finding::environment_met, 0, 2, 1, found});
+            return found;
+        }
         const Vec3 wo = -ray.direction;
         const PhongTerms terms = scene.with_bsdf(*hit, [](const auto& bsdf) {
             if constexpr (requires { bsdf.phong(); }) return bsdf.phong();
@@ -29,16 +34,21 @@ struct Phong {
         // Both sides of a surface are lit: a picture shows more than a hole.
         const Vec3 normal = dot(hit->shading_normal, wo) < 0 ? -hit->shading_normal : hit->shading_normal;
         Rgb sum = scene.emitted(*hit, wo);
+        tell(scene, Contributed{Finding::light_met, 0, 2, 1, sum});
         for (const Emitter& emitter : scene.emitters()) {
-            sum += terms.diffuse * inv_pi * ambient_irradiance(emitter);
+            const Rgb everywhere = terms.diffuse * inv_pi * ambient_irradiance(emitter);
+            tell(scene, Contributed{.how = Finding::ambient, .value = everywhere});
+            sum += everywhere;
             if (emitter.kind == Emitter::Kind::environment) continue;
             const Arrival light = arrival(scene, emitter, *hit);
             const float cosine = dot(light.wi, normal);
             if (!(cosine > 0) || is_black(light.irradiance) || !visible(scene, emitter, light)) continue;
             const Vec3 mirrored = 2 * cosine * normal - light.wi;
             const float highlight = std::pow(std::max(dot(mirrored, wo), 0.0f), terms.shininess);
-            sum += light.irradiance * inv_pi *
-                   (terms.diffuse * cosine + terms.specular * (highlight * (terms.shininess + 2) / 2));
+            const Rgb found = light.irradiance * inv_pi *
+                              (terms.diffuse * cosine + terms.specular * (highlight * (terms.shininess + 2) / 2));
+            tell(scene, Contributed{Finding::light_sampled, 1, 2, 1, found});
+            sum += found;
         }
         return sum;
     }

@@ -17,6 +17,7 @@ namespace lightswitch {
 struct PhotonMapping {
     static constexpr std::string_view name = "photon";
     static constexpr Kind kind = Kind::consistent;
+    static constexpr Dependence dependence = Dependence::iteration;
 
     int max_depth = PathLength{}.max_depth;  ///< see `PathLength`
     int rr_depth = PathLength{}.rr_depth;
@@ -76,15 +77,25 @@ private:
         SampledLight sampled;
         for (int depth = 1;; ++depth) {
             const auto hit = scene.intersect(ray);
-            if (!hit)
-                return sum + throughput * scene.environment(ray.direction) *
-                                 sampled.weight_of_environment(scene, ray.direction);
-            if (hit->light) sum += throughput * scene.emitted(*hit, hit->wo) * sampled.weight(scene, *hit);
+            if (!hit) {
+                const float weight = sampled.weight_of_environment(scene, ray.direction);
+                const Rgb found = throughput * scene.environment(ray.direction) * weight;
+                tell(scene, Contributed{Finding::environment_met, 0, depth + 1, weight, found});
+                return sum + found;
+            }
+            if (hit->light) {
+                const float weight = sampled.weight(scene, *hit);
+                const Rgb found = throughput * scene.emitted(*hit, hit->wo) * weight;
+                tell(scene, Contributed{Finding::light_met, 0, depth + 1, weight, found});
+                sum += found;
+            }
             if (depth == max_depth) return sum;
             const bool diffuse = connectable(scene, *hit);
             const bool gathers = diffuse && gather;
             if (gathers) {
-                sum += throughput * estimate(scene, *hit, depth, map) * share;
+                const Rgb found = throughput * estimate(scene, *hit, depth, map) * share;
+                tell(scene, Contributed{Finding::merged, 0, depth + 1, 1, found});
+                sum += found;
                 // What a Dirac lobe beside smooth ones shows no photon tells.
                 if (!scene.with_bsdf(*hit, [](const auto& bsdf) { return has_dirac_lobe(bsdf); })) return sum;
             }
@@ -92,7 +103,10 @@ private:
             const Vec2 direction = sampler.next_2d(), choices = sampler.next_2d();
             const Basis basis = hit->shading_frame();
             if (diffuse && !gathers) {
-                sum += throughput * direct_light(scene, *hit, choices.x, sampler.next_2d());
+                float weight = 1;
+                const Rgb found = throughput * direct_light(scene, *hit, choices.x, sampler.next_2d(), weight);
+                tell(scene, Contributed{Finding::light_sampled, 1, depth + 1, weight, found});
+                sum += found;
                 gather = true;
             }
             const auto scattered = scene.with_bsdf(*hit, [&](const auto& bsdf) {
@@ -101,6 +115,7 @@ private:
             if (!scattered || (gathers && !scattered->specular)) return sum;
             throughput *= scattered->weight;
             eta *= scattered->eta;
+            tell_bounce(scene, *scattered, basis.to_world(scattered->wi), throughput, eta, depth, rr_depth, choices.y);
             if (!survives_roulette(throughput, eta, depth, rr_depth, choices.y)) return sum;
             sampled.leave(*hit, scattered->pdf, diffuse && !scattered->specular);
             ray = hit->spawn(basis.to_world(scattered->wi));
@@ -118,12 +133,13 @@ private:
         return map.radius() > 0 ? sum * (1 / (pi * square(map.radius()))) : Rgb(0);
     }
 
-    Rgb direct_light(const auto& scene, const auto& at, float choice, const Vec2& place) const {
+    /// With its weight.
+    Rgb direct_light(const auto& scene, const auto& at, float choice, const Vec2& place, float& weight) const {
         const LightSample light = scene.sample_light(at, choice, place);
         if (!(light.pdf.value > 0)) return Rgb(0);
         const Turn towards = turn<Transport::radiance>(scene, at, Arrival(at), light.wi);
         if (is_black(towards.value) || scene.occluded(light.visibility)) return Rgb(0);
-        const float weight = light.dirac ? 1 : power_heuristic(light.pdf, towards.pdf);
+        weight = light.dirac ? 1 : power_heuristic(light.pdf, towards.pdf);
         return towards.value * light.radiance * (weight / light.pdf.value);
     }
 };

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <lightswitch/bsdf/bsdf.hpp>
 #include <lightswitch/core/math.hpp>
+#include <lightswitch/render/recording.hpp>
 
 namespace lightswitch {
 
@@ -10,6 +12,12 @@ struct PathLength {
     int rr_depth = 5;    ///< Russian roulette begins after that many bounces
 };
 
+/// The probability with which a path of that throughput goes on once roulette has begun; see `survives_roulette`.
+inline float survival_probability(float largest, float eta) {
+    // In this order a NaN gives 0.95: such a path goes on until it is counted where its radiance arrives.
+    return std::min(0.95f, largest * eta * eta);
+}
+
 /// Russian roulette after `bounces` bounces (counted from 1): false ends the path; otherwise `throughput` is divided by
 /// the probability of going on. `eta` is the product of the relative indices of refraction crossed: radiance grows by
 /// its square inside a medium and falls again on leaving, and must not raise the survival (Walter's fix, as in Mitsuba
@@ -18,11 +26,24 @@ inline bool survives_roulette(Rgb& throughput, float eta, int bounces, int rr_de
     const float largest = max_component(throughput);
     if (largest == 0) return false;
     if (bounces <= rr_depth) return true;
-    // In this order a NaN gives 0.95: such a path goes on until it is counted where its radiance arrives.
-    const float probability = std::min(0.95f, largest * eta * eta);
+    const float probability = survival_probability(largest, eta);
     if (u >= probability) return false;
     throughput /= probability;
     return true;
+}
+
+/// Tells a scene that listens of a bounce: called before `survives_roulette`, with the same arguments.
+[[gnu::always_inline]] inline void tell_bounce([[maybe_unused]] const auto& scene,
+                                               [[maybe_unused]] const BsdfSample& scattered,
+                                               [[maybe_unused]] const Vec3& direction,
+                                               [[maybe_unused]] const Rgb& throughput, [[maybe_unused]] float eta,
+                                               [[maybe_unused]] int bounces, [[maybe_unused]] int rr_depth,
+                                               [[maybe_unused]] float u) {
+    if constexpr (records<decltype(scene)>) {
+        const float largest = max_component(throughput);
+        const float survival = largest == 0 ? 0 : bounces <= rr_depth ? 1 : survival_probability(largest, eta);
+        scene.tell(Scattered{direction, scattered.pdf, scattered.specular, throughput, survival, !(u >= survival)});
+    }
 }
 
 }  // namespace lightswitch

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <lightswitch/render/method.hpp>
+#include <lightswitch/render/recording.hpp>
 
 namespace lightswitch {
 
@@ -12,7 +13,11 @@ struct Silhouette {
 
     Rgb color{1, 0, 1};
 
-    Rgb radiance(const auto& scene, const Ray& ray, auto&) const { return scene.intersect(ray) ? color : Rgb(0); }
+    Rgb radiance(const auto& scene, const Ray& ray, auto&) const {
+        const Rgb found = scene.intersect(ray) ? color : Rgb(0);
+        tell(scene, Contributed{.value = found});
+        return found;
+    }
 };
 
 }  // namespace lightswitch

@@ -118,6 +118,7 @@ public:
         const float choice = sampler.next_1d();
         const Vec2 place = sampler.next_2d(), direction = sampler.next_2d();
         emission_ = scene.sample_emission(choice, place, direction);
+        tell(scene, emission_);
         ray_ = emission_.ray;
         start_ = emission_.weight;
     }
@@ -171,6 +172,7 @@ public:
         } else {
             eta_ *= scattered->eta;
         }
+        tell_bounce(scene, *scattered, out, beta_, eta_, vertex_.edges, rr_depth, choices.y);
         if (!survives_roulette(beta_, eta_, vertex_.edges, rr_depth, choices.y)) return false;
 
         const double cosine = std::abs(dot(at.normal, out));

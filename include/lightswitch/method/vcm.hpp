@@ -15,6 +15,7 @@ namespace lightswitch {
 struct Vcm {
     static constexpr std::string_view name = "vcm";
     static constexpr Kind kind = Kind::consistent;
+    static constexpr Dependence dependence = Dependence::iteration;
 
     int max_depth = PathLength{}.max_depth;  ///< see `PathLength`
     int rr_depth = PathLength{}.rr_depth;    ///< of whole paths: each of the two that make one counts half as many

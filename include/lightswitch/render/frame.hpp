@@ -22,6 +22,34 @@ namespace lightswitch {
 /// thread.
 inline constexpr std::uint64_t paths_per_unit = 1024;
 
+namespace detail {
+
+/// Pixels are sampled in squares of that side.
+inline constexpr int tile_side = 16;
+inline constexpr std::uint32_t pixel_stream = 0, path_stream = 1;
+
+/// The random numbers of one call of `pixels` (even numbers) or `paths` (odd ones) in an iteration. Pass 0 is the first
+/// call of `pixels`, whatever else a method does: so all methods see the same camera rays.
+inline IterationPoints points_of_pass(Sampling sampling, std::uint64_t seed, std::uint64_t iteration,
+                                      std::uint64_t pass) {
+    return {sampling, pass == 0 ? seed : mix64(seed + pass * 0x9e3779b97f4a7c15u), iteration};
+}
+
+/// A ray from the camera through a point of a pixel's filter, and that point.
+struct PixelRay {
+    Vec2 film;
+    Ray ray;
+};
+[[gnu::always_inline]] inline PixelRay pixel_ray(const auto& camera, const Filter& filter, int x, int y,
+                                                 Sampler& sampler) {
+    const Vec2 u = sampler.next_2d();
+    const Vec2 offset = filter.kind() == Filter::Kind::box ? u - 0.5f : filter.sample(u);
+    const Vec2 film(static_cast<float>(x) + 0.5f + offset.x, static_cast<float>(y) + 0.5f + offset.y);
+    return {film, camera.ray(film, camera.has_lens() ? sampler.next_2d() : Vec2(0.5f))};
+}
+
+}  // namespace detail
+
 /// What a method that wants more than a ray is told about the pixel at hand.
 struct PixelContext {
     std::size_t index;   ///< row * width + column
@@ -121,17 +149,15 @@ public:
     }
 
 private:
-    static constexpr int tile = 16;
+    static constexpr int tile = detail::tile_side;
     static constexpr std::uint64_t units_per_wave =
         256;  // bounds the memory that splats take before they reach the film
-    static constexpr std::uint32_t pixel_stream = 0, path_stream = 1;
     /// Whether the function of `pixels` can splat.
     template <class F>
     static constexpr bool can_splat = std::invocable<const F&, const Ray&, Sampler&, const PixelContext&>;
 
-    /// Pass 0 is the first call of `pixels`, whatever else a method does: so all methods see the same camera rays.
     IterationPoints points_of_pass(std::uint64_t pass) const {
-        return {sampling_, pass == 0 ? seed_ : detail::mix64(seed_ + pass * 0x9e3779b97f4a7c15u), iteration_};
+        return detail::points_of_pass(sampling_, seed_, iteration_, pass);
     }
 
     /// Runs `work(unit, splatter, report)` for every unit, `per_wave` of them in parallel, and then folds, in the order
@@ -144,7 +170,7 @@ private:
             executor_.for_each(wave, [&](std::size_t unit) {
                 if (stopped()) return;
                 const detail::UnitScope scope(reports[unit]);
-                Splatter splatter(splats[unit], reports[unit], film_, filter_, iteration_, seed_);
+                Splatter splatter(splats[unit], reports[unit], width(), height(), filter_, iteration_, seed_);
                 work(first + unit, splatter, reports[unit]);
             });
             for (const auto& unit : splats) {
@@ -164,7 +190,7 @@ private:
     [[gnu::noinline]] void trace_paths(const IterationPoints& points, std::uint64_t begin, std::uint64_t end,
                                        const auto& fn, Splatter& splatter) {
         for (std::uint64_t i = begin; i < end; ++i) {
-            Sampler sampler(points, path_stream, i);
+            Sampler sampler(points, detail::path_stream, i);
             fn(i, sampler, splatter);
         }
     }
@@ -174,12 +200,8 @@ private:
                       detail::UnitReport& report) {
         const std::size_t pixel =
             static_cast<std::size_t>(y) * static_cast<std::size_t>(width()) + static_cast<std::size_t>(x);
-        Sampler sampler(points, pixel_stream, pixel);
-        const Vec2 u = sampler.next_2d();
-        const Vec2 offset = filter_.kind() == Filter::Kind::box ? u - 0.5f : filter_.sample(u);
-        const Vec2 position(static_cast<float>(x) + 0.5f + offset.x, static_cast<float>(y) + 0.5f + offset.y);
-        const auto& camera = scene_.camera();
-        const Ray ray = camera.ray(position, camera.has_lens() ? sampler.next_2d() : Vec2(0.5f));
+        Sampler sampler(points, detail::pixel_stream, pixel);
+        const Ray ray = detail::pixel_ray(scene_.camera(), filter_, x, y, sampler).ray;
         const std::uint64_t refused = ray_count.refused;
         Rgb value;
         if constexpr (can_splat<F>) value = fn(ray, sampler, PixelContext{pixel, splatter});

@@ -29,6 +29,14 @@ constexpr std::string_view name(Kind kind) {
     }
 }
 
+/// What the sample of a pixel in an iteration depends on: what has to be made again to have it again (`replay`). An
+/// image method says so with `static constexpr Dependence dependence`; of pixel methods it is known.
+enum class Dependence {
+    pixel,      ///< on what `frame.pixels` gives for that pixel, and nothing else; splats are looked for in others
+    iteration,  ///< on the light paths of the iteration (`frame.paths`), too; other pixels add nothing to it
+    history,    ///< on anything before, in other pixels and iterations: what is assumed of a method that does not say
+};
+
 /// What rendering asks of a scene, and every method may: the camera and film by which it is seen, and what rays meet.
 /// `Scene` is one; so is anything that stands before one, such as a scene that counts its rays. What else a method asks
 /// for (surfaces, lights) is between it and the scene: see the members of `Scene`.

@@ -71,12 +71,13 @@ private:
 /// Collects the splats of one work unit.
 class Splatter {
 public:
-    Splatter(std::vector<Splat>& splats, detail::UnitReport& report, const Film& film, const Filter& filter,
+    /// On a film of that size.
+    Splatter(std::vector<Splat>& splats, detail::UnitReport& report, int width, int height, const Filter& filter,
              std::uint64_t iteration, std::uint64_t seed)
         : splats_(&splats),
           report_(&report),
-          width_(film.width()),
-          height_(film.height()),
+          width_(width),
+          height_(height),
           filter_(filter),
           iteration_(iteration),
           seed_(seed) {}
