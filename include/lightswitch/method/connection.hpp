@@ -126,7 +126,7 @@ void see_lights(auto& frame) {
 }
 
 /// Whether the connection contributes anything, which takes a ray if it may.
-inline bool visible(const auto& scene, const Connection& connection) {
+[[gnu::always_inline]] inline bool visible(const auto& scene, const Connection& connection) {
     return !is_black(connection.value) && connection.weight > 0 && !scene.occluded(connection.visibility);
 }
 
@@ -161,7 +161,7 @@ Rgb gather_camera_subpath(const auto& scene, const Ray& ray, auto& sampler, cons
     float gathered = 0;
     RandomSequence roulette(sampler.next_2d());
     tell(scene, ray);
-    const auto add = [&](const Contribution& found, Finding how, int s, int t) {
+    const auto add = [&](const Contribution& found, Finding how, int s, int t) __attribute__((always_inline)) {
         gathered += max_component(found.value) * found.weight;
         const Rgb value = count(found, s, t);
         tell(scene, told(how, found, value, s, t));
