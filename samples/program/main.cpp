@@ -28,8 +28,8 @@
 namespace lightswitch::program {
 namespace {
 
-constexpr std::array<std::string_view, 7> commands{"render",     "view",    "compare", "verify",
-                                                   "strategies", "methods", "info"};
+constexpr std::array<std::string_view, 8> commands{"render",     "view",   "compare", "verify",
+                                                   "strategies", "replay", "methods", "info"};
 /// CLI11's help, with a usage line that shows what must be given.
 class Help : public CLI::Formatter {
 public:
@@ -44,6 +44,7 @@ public:
                 "       lightswitch verify SCENE --images FILES [OPTIONS]\n"
                 "       lightswitch verify --images FILES --against FILES [OPTIONS]");
         if (command == "strategies") return usage("strategies SCENE --output FILE [OPTIONS]");
+        if (command == "replay") return usage("replay SCENE --pixel X,Y [OPTIONS]");
         if (command == "info") return usage("info SCENE [OPTIONS]");
         if (command == "methods") return usage("methods");
         return usage("COMMAND [OPTIONS]");
@@ -114,6 +115,7 @@ int run_command(int argc, char** argv) {
     CompareOptions compare_options;
     VerifyCommand verify_options;
     StrategiesCommand strategies_options;
+    ReplayCommand replay_options;
     SceneOptions info_options;
     CLI::App& render_command = *app.add_subcommand("render", "Render a scene to image files");
     CLI::App& view_command = *app.add_subcommand("view", "Open a window in which methods are switched live");
@@ -121,6 +123,7 @@ int run_command(int argc, char** argv) {
     CLI::App& verify_command = *app.add_subcommand("verify", "Tell whether methods have the same expected image");
     CLI::App& strategies_command =
         *app.add_subcommand("strategies", "Show what each strategy of bidirectional path tracing finds");
+    CLI::App& replay_command = *app.add_subcommand("replay", "Tell how one sample of a pixel came about");
     CLI::App& methods_command = *app.add_subcommand("methods", "List the methods: kind, what each can and cannot do");
     CLI::App& info_command = *app.add_subcommand("info", "Tell what a scene requires");
     add_render(render_command, render_options);
@@ -128,6 +131,7 @@ int run_command(int argc, char** argv) {
     add_compare(compare_command, compare_options);
     add_verify(verify_command, verify_options);
     add_strategies(strategies_command, strategies_options);
+    add_replay(replay_command, replay_options);
     add_scene_options(info_command, info_options);
     methods_command.footer(
         "Examples:\n"
@@ -164,11 +168,13 @@ int run_command(int argc, char** argv) {
     if (&command == &verify_command) return verify(verify_options);
     const SceneOptions& scene = &command == &info_command         ? info_options
                                 : &command == &strategies_command ? strategies_options.scene
+                                : &command == &replay_command     ? replay_options.scene
                                                                   : render_options.scene;
     if (scene.scene.empty())
         throw Error(fmt::format("{}: name a scene: a file that ends in {}, or one of {}", command.get_name(),
                                 scene_endings(), list(stock::names)));
     if (&command == &info_command) return info(info_options);
+    if (&command == &replay_command) return replay(replay_options);
     return &command == &strategies_command ? strategies(strategies_options) : render(render_options);
 }
 

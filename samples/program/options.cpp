@@ -81,20 +81,6 @@ int parse_max_depth(std::string_view text) {
     return depth;
 }
 
-/// How long paths are, and what draws their random numbers.
-void add_path_options(CLI::App& app, auto& options) {
-    add_value(
-        app, "--max-depth", "D", [&](const std::string& text) { options.max_depth = parse_max_depth(text); },
-        "path length: 1 is emission seen directly, 2 adds direct light,\n-1 is unlimited (default: the scene's, or "
-        "-1)");
-    add_value(
-        app, "--rr-depth", "D", [&](const std::string& text) { options.rr_depth = parse_int("--rr-depth", text, 0); },
-        "bounces before Russian roulette begins (default: the scene's, or 5)");
-    add_value(
-        app, "--sampler", "NAME", [&](const std::string& text) { options.sampling = parse_sampling(text); },
-        "sobol (default: less noise) or independent");
-}
-
 }  // namespace
 
 void add_scene_options(CLI::App& app, SceneOptions& options) {
@@ -135,6 +121,19 @@ void add_scene_options(CLI::App& app, SceneOptions& options) {
     app.add_flag("--robust", options.build.robust, "watertight edges between triangles (slower)");
 }
 
+void add_path_options(CLI::App& app, std::optional<int>& max_depth, std::optional<int>& rr_depth, Sampling& sampling) {
+    add_value(
+        app, "--max-depth", "D", [&](const std::string& text) { max_depth = parse_max_depth(text); },
+        "path length: 1 is emission seen directly, 2 adds direct light,\n-1 is unlimited (default: the scene's, or "
+        "-1)");
+    add_value(
+        app, "--rr-depth", "D", [&](const std::string& text) { rr_depth = parse_int("--rr-depth", text, 0); },
+        "bounces before Russian roulette begins (default: the scene's, or 5)");
+    add_value(
+        app, "--sampler", "NAME", [&](const std::string& text) { sampling = parse_sampling(text); },
+        "sobol (default: less noise) or independent");
+}
+
 void add_render(CLI::App& app, RenderOptions& options) {
     add_scene_options(app, options.scene);
     add_name(app, "-m,--method", "NAME", options.method,
@@ -159,7 +158,7 @@ void add_render(CLI::App& app, RenderOptions& options) {
         "samples on.\nAlone it ends an image that stays black after 256 samples");
     add_seed(app, options.seed, "another seed gives other noise (default: 0)");
     add_threads(app, options.threads, ".\nThe image is the same for any number");
-    add_path_options(app, options);
+    add_path_options(app, options.max_depth, options.rr_depth, options.sampling);
     add_value(
         app, "--exposure", "STOPS",
         [&](const std::string& text) {
@@ -209,7 +208,7 @@ void add_view(CLI::App& app, ViewOptions& options) {
     add_value(
         app, "--spp", "N", [&](const std::string& text) { options.samples = parse_int("--spp", text, 1); },
         "samples per pixel after which a method rests (default: it goes on)");
-    add_path_options(app, options);
+    add_path_options(app, options.max_depth, options.rr_depth, options.sampling);
     add_seed(app, options.seed, "another seed gives other noise (default: 0)");
     add_threads(app, options.threads);
     add_value(

@@ -15,6 +15,10 @@ void add_view(CLI::App& app, ViewOptions& options);
 void add_compare(CLI::App& app, CompareOptions& options);
 void add_verify(CLI::App& app, VerifyCommand& command);
 void add_strategies(CLI::App& app, StrategiesCommand& command);
+void add_replay(CLI::App& app, ReplayCommand& command);
+
+/// How long paths become, and which random numbers they take: as `render` has it.
+void add_path_options(CLI::App& app, std::optional<int>& max_depth, std::optional<int>& rr_depth, Sampling& sampling);
 
 /// The options that only some methods have, as a group of their own.
 void add_method_options(CLI::App& app, MethodOptions& options);

@@ -113,12 +113,33 @@ struct StrategiesCommand {
     bool unweighted = false, quiet = false;
 };
 
+/// A pixel, counted from 0 at the top left.
+struct PixelAt {
+    int x = 0, y = 0;
+};
+
+struct ReplayCommand {
+    SceneOptions scene;
+    std::string method = "path-nee";
+    MethodOptions of_method;
+    std::optional<PixelAt> pixel;
+    std::uint64_t iteration = 0, brightest = 0;  ///< of so many the brightest instead, unless that is 0
+    std::optional<int> max_depth, rr_depth;
+    std::uint64_t seed = 0;
+    int threads = 0;
+    Sampling sampling = Sampling::sobol;
+    bool own = false;  ///< without what paths of other pixels splat
+    std::string json;  ///< a file, "-" for standard output, or empty
+    bool quiet = false;
+};
+
 // Each runs one sub-command and returns the program's exit status. They throw `Error` for what the user can mend.
 int render(const RenderOptions& options);
 int compare(const CompareOptions& options);
 int verify(const VerifyCommand& command);
 int strategies(const StrategiesCommand& command);
 int view(const ViewOptions& options);
+int replay(const ReplayCommand& command);
 int info(const SceneOptions& options);
 int list_methods();
 

@@ -28,21 +28,6 @@ Outputs checked_outputs(const RenderOptions& options) {
     return outputs;
 }
 
-void warn_about_depths(const AnyMethod& method, const RenderOptions& options) {
-    const auto [has_depth, has_roulette] = std::visit(
-        [](const auto& m) {
-            return std::pair(
-                requires { m.max_depth; }, requires { m.rr_depth; });
-        },
-        method);
-    if (!has_depth && (options.max_depth || options.rr_depth))
-        print_warning(fmt::format("the method {} has no path length: --max-depth and --rr-depth change nothing",
-                                  method_name(method)));
-    else if (!has_roulette && options.rr_depth)
-        print_warning(
-            fmt::format("the method {} has no Russian roulette: --rr-depth changes nothing", method_name(method)));
-}
-
 Budget budget(const RenderOptions& options, const SceneSummary& summary) {
     Budget result = options.budget;
     if (result.samples == 0 && result.seconds == 0 && result.error == 0) result.samples = summary.samples.value_or(64);
@@ -113,7 +98,7 @@ int render(const RenderOptions& options) {
     const Size size = loaded.summary.size;
     set_options({&method, 1}, options.of_method, std::size_t(size.width) * std::size_t(size.height));
     warn_about_scene(loaded, method_name(method));
-    warn_about_depths(method, options);
+    warn_about_depths(method, options.max_depth, options.rr_depth);
     set_path_length(method, path_length(loaded.summary, options.max_depth, options.rr_depth));
 
     Cancellation cancellation;

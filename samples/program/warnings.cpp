@@ -43,14 +43,32 @@ void warn_about_scene(const LoadedScene& loaded, std::string_view method) {
     warn_about_clipping(loaded);
 }
 
+void warn_about_depths(const AnyMethod& method, const std::optional<int>& max_depth,
+                       const std::optional<int>& rr_depth) {
+    const auto [has_depth, has_roulette] = std::visit(
+        [](const auto& m) {
+            return std::pair(
+                requires { m.max_depth; }, requires { m.rr_depth; });
+        },
+        method);
+    if (!has_depth && (max_depth || rr_depth))
+        print_warning(fmt::format("the method {} has no path length: --max-depth and --rr-depth change nothing",
+                                  method_name(method)));
+    else if (!has_roulette && rr_depth)
+        print_warning(
+            fmt::format("the method {} has no Russian roulette: --rr-depth changes nothing", method_name(method)));
+}
+
 void warn_about_values(const RenderCounts& counts, const Image& image) {
     if (counts.non_finite == 0 || counts.first_non_finite.empty()) return;
     const NonFinite& first = counts.first_non_finite.front();
     const auto width = static_cast<std::uint32_t>(image.width());
     print_warning(fmt::format(
         "{} contributions were not finite and count as black; the first in pixel ({}, {}), "
-        "iteration {}; to meet it again: --seed {} --spp {}",
-        counts.non_finite, first.pixel % width, first.pixel / width, first.iteration, first.seed, first.iteration + 1));
+        "iteration {}; to see how it came about: lightswitch replay, with --pixel {},{} --iteration {} --seed {} and "
+        "else the same options",
+        counts.non_finite, first.pixel % width, first.pixel / width, first.iteration, first.pixel % width,
+        first.pixel / width, first.iteration, first.seed));
 }
 
 void warn_about_black(std::uint64_t samples) {

@@ -4,12 +4,19 @@
 
 #include "load.hpp"
 
+#include <lightswitch/method/any_method.hpp>
+
+#include <optional>
 #include <string_view>
 
 namespace lightswitch::program {
 
 /// What the method will not see of the scene, and what nobody will.
 void warn_about_scene(const LoadedScene& loaded, std::string_view method);
+
+/// Path lengths that are asked for and of no use to the method.
+void warn_about_depths(const AnyMethod& method, const std::optional<int>& max_depth,
+                       const std::optional<int>& rr_depth);
 
 /// Values that were not finite, and how to meet the first of them again.
 void warn_about_values(const RenderCounts& counts, const Image& image);

@@ -32,17 +32,23 @@ inline bool survives_roulette(Rgb& throughput, float eta, int bounces, int rr_de
     return true;
 }
 
-/// Tells a scene that listens of a bounce: called before `survives_roulette`, with the same arguments.
+/// Tells a scene that listens of a bounce, before `survives_roulette` is asked with the same arguments. The path carries
+/// `start` times the throughput.
 [[gnu::always_inline]] inline void tell_bounce([[maybe_unused]] const auto& scene,
                                                [[maybe_unused]] const BsdfSample& scattered,
                                                [[maybe_unused]] const Vec3& direction,
                                                [[maybe_unused]] const Rgb& throughput, [[maybe_unused]] float eta,
                                                [[maybe_unused]] int bounces, [[maybe_unused]] int rr_depth,
-                                               [[maybe_unused]] float u) {
+                                               [[maybe_unused]] float u, [[maybe_unused]] const Rgb& start = Rgb(1)) {
     if constexpr (records<decltype(scene)>) {
         const float largest = max_component(throughput);
         const float survival = largest == 0 ? 0 : bounces <= rr_depth ? 1 : survival_probability(largest, eta);
-        scene.tell(Scattered{direction, scattered.pdf, scattered.specular, throughput, survival, !(u >= survival)});
+        scene.tell(Scattered{.direction = direction,
+                             .pdf = scattered.pdf,
+                             .specular = scattered.specular,
+                             .throughput = start * throughput,
+                             .survival = survival,
+                             .survived = !(u >= survival)});
     }
 }
 

@@ -172,7 +172,7 @@ public:
         } else {
             eta_ *= scattered->eta;
         }
-        tell_bounce(scene, *scattered, out, beta_, eta_, vertex_.edges, rr_depth, choices.y);
+        tell_bounce(scene, *scattered, out, beta_, eta_, vertex_.edges, rr_depth, choices.y, start_);
         if (!survives_roulette(beta_, eta_, vertex_.edges, rr_depth, choices.y)) return false;
 
         const double cosine = std::abs(dot(at.normal, out));
