@@ -107,7 +107,7 @@ inline Contribution meet_environment(const auto& scene, const auto& path) {
             z.point.segment_to(y.point.position, y.point.normal, y.point.offset)};
 }
 
-/// What is told of a contribution that counts as `value`: by which its weight is known, whatever the method makes of it.
+/// What is told of a contribution that counts as `value`: so its weight is the one that the method has given it.
 [[gnu::always_inline]] inline Contributed told(Finding how, const Contribution& found, const Rgb& value, int s, int t,
                                                const Vec2& film = Vec2(0)) {
     const float weight = max_component(value) / max_component(found.value);

@@ -32,8 +32,8 @@ inline bool survives_roulette(Rgb& throughput, float eta, int bounces, int rr_de
     return true;
 }
 
-/// Tells a scene that listens of a bounce, before `survives_roulette` is asked with the same arguments. The path carries
-/// `start` times the throughput.
+/// Tells a scene that listens of a bounce, before `survives_roulette` is asked with the same arguments. The path
+/// carries `start` times the throughput.
 [[gnu::always_inline]] inline void tell_bounce([[maybe_unused]] const auto& scene,
                                                [[maybe_unused]] const BsdfSample& scattered,
                                                [[maybe_unused]] const Vec3& direction,

@@ -11,8 +11,8 @@ namespace lightswitch {
 
 /// What `replay` looks at.
 struct ReplayOptions {
-    /// Splats of other pixels' paths, where a method has them. For them an image method makes a whole iteration; without
-    /// them, `bdpt` traces no more than the pixel's own paths.
+    /// Splats of other pixels' paths, where a method has them. For them `bdpt` makes a whole iteration; without them it
+    /// traces no more than the pixel's own paths.
     bool others = true;
 };
 

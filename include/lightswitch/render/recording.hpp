@@ -176,9 +176,9 @@ inline constexpr bool records = requires {
     requires std::remove_cvref_t<SceneType>::is_recording;
 };
 
-/// Tells a scene that listens what a method does: of `Contributed`, `Scattered`, where a path begins. To be called right
-/// where a value is added to the sum that becomes the sample, in that order: then they add up to it, to the bit. A
-/// method need not tell; what it does not, `replay` does not explain.
+/// Tells a scene that listens what a method does: of `Contributed`, `Scattered`, where a path begins. To be called
+/// right where a value is added to the sum that becomes the sample, in that order: then they add up to it, to the bit.
+/// A method need not tell; what it does not, `replay` does not explain.
 [[gnu::always_inline]] inline void tell([[maybe_unused]] const auto& scene, [[maybe_unused]] const auto& what) {
     if constexpr (records<decltype(scene)>) scene.tell(what);
 }

@@ -214,8 +214,8 @@ inline constexpr Dependence dependence_of = detail::Replayer<SceneType, M>::depe
 ///
 /// What it takes is up to the method (`Dependence`): a path; an iteration; or, of a method that says nothing of it, all
 /// iterations up to this one. The events tell of the rays of any method, and of contributions as far as the method
-/// tells (`tell`), as the library's do; of `mlt`, where a chain's walk is one long path, only what it splatted and which
-/// chain did. The observer is not called. Throws `Error` when there is no such pixel.
+/// tells (`tell`), as the library's do; of `mlt`, where a chain's walk is one long path, only what it splatted and
+/// which chain did. The observer is not called. Throws `Error` when there is no such pixel.
 template <class SceneType, class M>
 PathReplay replay(const SceneType& scene, const M& method, const Settings& settings, int x, int y,
                   std::uint64_t iteration, const ReplayOptions& options = {}) {
@@ -237,8 +237,8 @@ PathReplay replay(const SceneType& scene, const M& method, const Settings& setti
 
 /// Finds the brightest of the samples that pixel (x, y) gets in the iterations 0 to `iterations` - 1 of a render with
 /// these settings: the one that made an outlier. Of pixel methods, and of `bdpt` without what others splat, only that
-/// pixel is traced, many iterations at a time; of the rest one iteration after another is made, as `replay` does. Throws
-/// `Error` when there is no such pixel.
+/// pixel is traced, many iterations at a time; of the rest one iteration after another is made, as `replay` does.
+/// Throws `Error` when there is no such pixel.
 template <class SceneType, class M>
 BrightestSample brightest_sample(const SceneType& scene, const M& method, const Settings& settings, int x, int y,
                                  std::uint64_t iterations, const ReplayOptions& options = {}) {
