@@ -109,36 +109,6 @@ TEST_CASE("replay: every method's values are those that the film got, bit for bi
         });
 }
 
-TEST_CASE("replay: sums have all bits of the film's, which are in double precision") {
-    // The film's estimate of its error knows every bit of every pixel's sums.
-    const AnyScene any = small("cornell-box");
-    const auto& scene = std::get<DiffuseScene>(any);
-    const auto check = [&](const auto& method) {
-        CAPTURE(method.name);
-        constexpr int n = 2;
-        Session session(scene, method, {.seed = 5});
-        session.run({.samples = n});
-        DVec3 mean(0), variance(0);
-        for (int pixel = 0; pixel < width * height; ++pixel) {
-            DVec3 sum(0), squares(0);
-            for (std::uint64_t i = 0; i < n; ++i) {
-                const DVec3 value = replay(scene, method, {.seed = 5}, pixel % width, pixel / width, i).value();
-                sum += value;
-                squares += value * value;
-            }
-            mean += sum / double(n);
-            variance += glm::max(squares - sum * sum / double(n), DVec3(0)) / (double(n) * (n - 1));
-        }
-        const double area = width * height;
-        CHECK(std::sqrt((variance.x + variance.y + variance.z) / (3 * area)) /
-                  ((mean.x + mean.y + mean.z) / (3 * area)) ==
-              session.film().relative_error());
-    };
-    check(Bdpt{});
-    check(LightTracer{});
-    check(PathTracerNee{});
-}
-
 TEST_CASE("replay: settings of methods, and deep paths") {
     const AnyScene any = small("cornell-spheres");
     const auto& scene = std::get<FullScene>(any);

@@ -85,6 +85,27 @@ struct Remembering {
     }
 };
 
+/// Splats of so different sizes that their sum depends on their order, even in double precision.
+struct WideRange {
+    static constexpr std::string_view name = "wide";
+    static constexpr Kind kind = Kind::unbiased;
+    static constexpr Dependence dependence = Dependence::pixel;
+
+    struct State {};
+    State start(auto&) const { return {}; }
+    void iterate(auto& frame, State&) const {
+        const auto splat = [](auto& sampler, auto& splatter) {
+            const float u = sampler.next_1d();
+            splatter.splat({sampler.next_1d() * 20, sampler.next_1d() * 17}, Rgb(std::exp2(100 * u - 50)));
+        };
+        frame.pixels([&](const Ray&, auto& sampler, const PixelContext& pixel) {
+            for (int i = 0; i < 8; ++i) splat(sampler, pixel.splatter);
+            return Rgb(1);
+        });
+        frame.paths(3000, [&](std::uint64_t, auto& sampler, auto& splatter) { splat(sampler, splatter); });
+    }
+};
+
 template <class M>
 std::size_t check_values(const M& method, int iterations) {
     Session<DiffuseScene, M> session(scene(), method, {.seed = 4});
@@ -131,6 +152,28 @@ TEST_CASE("replay: a method that tells nothing has its values and its rays told"
 TEST_CASE("replay: a method of which nothing is known is made again from its first iteration on") {
     CHECK(dependence_of<DiffuseScene, Remembering> == Dependence::history);
     CHECK(check_values(Remembering{}, 4) > 0);
+}
+
+TEST_CASE("replay: splats are added in the order of the film, with all bits of its sums") {
+    // The film's estimate of its error knows every bit of every pixel's sums.
+    const WideRange method;
+    constexpr int n = 2;
+    Session session(scene(), method, {.seed = 5});
+    session.run({.samples = n});
+    DVec3 mean(0), variance(0);
+    for (int pixel = 0; pixel < 20 * 17; ++pixel) {
+        DVec3 sum(0), squares(0);
+        for (std::uint64_t i = 0; i < n; ++i) {
+            const DVec3 value = replay(scene(), method, {.seed = 5}, pixel % 20, pixel / 20, i).value();
+            sum += value;
+            squares += value * value;
+        }
+        mean += sum / double(n);
+        variance += glm::max(squares - sum * sum / double(n), DVec3(0)) / (double(n) * (n - 1));
+    }
+    const double channels = 3 * 20 * 17;
+    const double level = (mean.x + mean.y + mean.z) / channels;
+    CHECK(std::sqrt((variance.x + variance.y + variance.z) / channels) / level == session.film().relative_error());
 }
 
 TEST_CASE("replay: a method of a user may tell its contributions") {
