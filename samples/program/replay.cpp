@@ -4,6 +4,7 @@
 #include "method_notes.hpp"
 #include "method_options.hpp"
 #include "outputs.hpp"
+#include "replay_row.hpp"
 #include "run.hpp"
 #include "text.hpp"
 #include "warnings.hpp"
@@ -17,70 +18,11 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Kind = PathEvent::Kind;
 
-template <class T>
-std::string text(const glm::vec<3, T>& v) {
-    const auto w = v + T(0);  // no -0
-    return fmt::format("({:.6g}, {:.6g}, {:.6g})", w.x, w.y, w.z);
-}
-std::string text(const DVec2& v) { return fmt::format("({:.6g}, {:.6g})", v.x, v.y); }
-
-/// What is there: "diffuse, shape 3, primitive 1; TriangleLight".
-std::string place(const PathEvent& event) {
-    std::string result(event.surface);
-    if (event.shape > 0)
-        result += fmt::format("{}shape {}, primitive {}", result.empty() ? "" : ", ", event.shape, event.primitive);
-    if (!event.light.empty()) result += fmt::format("{}{}", result.empty() ? "" : "; ", event.light);
-    return result;
-}
-
-std::string strategy(const PathEvent& event) {
-    if (event.light_vertices + event.camera_vertices == 0) return std::string(name(event.how));
-    return fmt::format("{}, s={} t={}, weight {:.6g}", name(event.how), event.light_vertices, event.camera_vertices,
-                       event.weight);
-}
-
-/// The columns of the listing.
-struct Row {
-    std::string vertex, what, first, second, rest;
-};
-
-void print(const Row& row) {
+void print(const ReplayRow& row) {
     std::string line =
         fmt::format("{:<3} {:<12} {:<45} {:<45} {}", row.vertex, row.what, row.first, row.second, row.rest);
     line.resize(line.find_last_not_of(' ') + 1);
     fmt::print("{}\n", line);
-}
-
-Row row(const PathEvent& event, const Rgb& sum) {
-    const std::string vertex = fmt::format("{}{}", event.of_light ? 'y' : 'z', event.vertex);
-    const std::string kind(name(event.kind));
-    switch (event.kind) {
-        case Kind::camera:
-            return {vertex, kind, "at " + text(event.from), "towards " + text(event.direction),
-                    "through " + text(event.film) + " of the film"};
-        case Kind::light:
-            return {vertex, kind, "at " + text(event.from), "towards " + text(event.direction),
-                    fmt::format("{}, carrying {}", event.light, text(event.throughput))};
-        case Kind::surface:
-            return {vertex, kind, "at " + text(event.position), "normal " + text(event.normal), place(event)};
-        case Kind::escape: return {"", kind, "", "towards " + text(event.direction), "nothing is there"};
-        case Kind::scatter:
-            return {vertex, kind, "towards " + text(event.direction), "carrying " + text(event.throughput),
-                    (event.specular ? "Dirac lobe" : fmt::format("density {:.6g}", event.pdf)) +
-                        (event.survival == 1 ? ""
-                                             : fmt::format(", roulette {:.6g}: {}", event.survival,
-                                                           event.survived ? "goes on" : "ends"))};
-        case Kind::shadow:
-            return {vertex, "shadow ray", (event.blocked ? "blocked at " : "to ") + text(event.position), "",
-                    event.blocked ? place(event) : "free"};
-        case Kind::contribution:
-            return {vertex, "+", "value " + text(event.value), "sum " + text(sum), strategy(event)};
-        case Kind::splat:
-            return {vertex, event.here ? "+ splat" : "splat", "value " + text(event.value),
-                    event.how == Finding::other ? "" : "at " + text(event.film) + (event.here ? "" : ": elsewhere"),
-                    fmt::format("{}; of path {}", strategy(event), event.path)};
-        default: return {"", "= sample", "value " + text(event.value), "", event.here ? "" : "not finite: black"};
-    }
 }
 
 void print_listing(const PathReplay& replayed) {
@@ -89,11 +31,11 @@ void print_listing(const PathReplay& replayed) {
         if (event.kind == Kind::contribution) sum += event.value;
         if ((event.kind == Kind::camera || event.kind == Kind::light) && &event != &replayed.events.front())
             fmt::print("\n");
-        print(row(event, sum));
+        print(replay_row(event, sum));
         if (event.kind == Kind::sample) sum = Rgb(0);
     }
-    fmt::print("\nfilm {}: sample {} and splats {}\n", text(replayed.value()), text(replayed.sample),
-               text(replayed.splatted));
+    fmt::print("\nfilm {}: sample {} and splats {}\n", text_of(replayed.value()), text_of(replayed.sample),
+               text_of(replayed.splatted));
     if (replayed.dropped > 0) fmt::print("{} values or rays were not finite; they count as black\n", replayed.dropped);
     fmt::print("{}\n", replayed.explained
                            ? "the contributions add up to it, bit for bit"
@@ -196,7 +138,7 @@ std::string listing_json(const ReplayCommand& command, const ReplayedPixel& at,
 void print_brightest(const BrightestSample& brightest) {
     const double mean = luminance(brightest.mean), value = luminance(brightest.value);
     fmt::print("brightest of {} samples: iteration {}, value {}{}\n", brightest.tried, brightest.iteration,
-               text(brightest.value), mean > 0 ? fmt::format(", {:.3g} times their mean", value / mean) : "");
+               text_of(brightest.value), mean > 0 ? fmt::format(", {:.3g} times their mean", value / mean) : "");
     if (brightest.first_non_finite)
         fmt::print("{} of them had values that were not finite: the first is --iteration {}\n", brightest.non_finite,
                    *brightest.first_non_finite);

@@ -9,8 +9,8 @@
 
 namespace lightswitch::program {
 
-/// A camera that turns around a pivot in front of it. It always has a rigid `to_world`, and keeps what it does not move:
-/// lens, clipping, projection. Lengths are in scene units.
+/// A camera that turns around a pivot in front of it. It always has a rigid `to_world`, and keeps what it does not
+/// move: lens, clipping, projection. Lengths are in scene units.
 class CameraControl {
 public:
     CameraControl() = default;

@@ -99,6 +99,18 @@ void Interface::make_commands() {
     add("View", "Zoom out", "PageDown", GLFW_KEY_PAGE_DOWN, 0, [this] { zoom_ = std::max(zoom_ / 2, 0.25f); });
     add(
         "View", "Next value that is not finite", "N", GLFW_KEY_N, 0, [this] { next_non_finite(); }, {}, there);
+    const auto neighbour = [this](int step) {
+        const auto path = live_->followed();
+        follow(path ? static_cast<std::int64_t>(path->at.iteration) + step : 0);
+    };
+    add(
+        "Pixel", "Path of a later sample", "Y", GLFW_KEY_Y, 0, [=] { neighbour(1); }, {}, there);
+    add(
+        "Pixel", "Path of an earlier sample", "Shift+Y", GLFW_KEY_Y, shift, [=] { neighbour(-1); }, {}, there);
+    add(
+        "Pixel", "Path of the brightest sample", "U", GLFW_KEY_U, 0, [this] { follow_brightest(); }, {}, there);
+    add(
+        "Pixel", "None", "Esc", GLFW_KEY_ESCAPE, 0, [this] { picked_.reset(); }, {}, there);
     add(
         "View", "Panel", "H", GLFW_KEY_H, 0, [this] { shows_panel_ = !shows_panel_; }, [this] { return shows_panel_; });
 

@@ -126,6 +126,7 @@ void Interface::frame() {
         ImGui::End();
     }
     status_bar();
+    if (live_) path_window();
     popups();
     window_.end_frame();
 
@@ -139,7 +140,7 @@ void Interface::frame() {
 
 void Interface::menu_bar() {
     if (!ImGui::BeginMainMenuBar()) return;
-    for (const char* menu : {"Scene", "Method", "Compare", "View", "Camera", "Help"}) {
+    for (const char* menu : {"Scene", "Method", "Compare", "View", "Pixel", "Camera", "Help"}) {
         if (!ImGui::BeginMenu(menu)) continue;
         for (const Command& command : commands_) {
             if (std::string_view(command.menu) != menu) continue;
@@ -204,10 +205,33 @@ void Interface::next_non_finite() {
     pick(static_cast<int>(place.pixel % width), static_cast<int>(place.pixel / width));
     zoom_ = std::max(zoom_, 16.0f);
     center_ = {(picked_->first + 0.5) / live_->film().width, (picked_->second + 0.5) / live_->film().height};
+    follow(static_cast<std::int64_t>(place.iteration));
     tell(fmt::format("Pixel ({}, {}), iteration {}, seed {}.", picked_->first, picked_->second, place.iteration,
                      place.seed));
 }
 
-void Interface::pick(int x, int y) { picked_ = {x, y}; }
+void Interface::pick(int x, int y) {
+    picked_ = {x, y};
+    const auto& snapshot = live_->shown_method().snapshot;
+    // The sample of a chain takes all iterations before it: only who asks for it gets it.
+    if (snapshot && snapshot->iterations > 0 && live_->shown_method().name != Mlt::name)
+        follow(static_cast<std::int64_t>(snapshot->iterations) - 1);
+}
+
+/// Of the picked pixel, as far as there are such iterations.
+void Interface::follow(std::int64_t iteration) {
+    const auto& snapshot = live_->shown_method().snapshot;
+    if (!picked_) return tell("Pick a pixel first: click on it.");
+    if (!snapshot || snapshot->iterations == 0) return;
+    const auto last = static_cast<std::int64_t>(snapshot->iterations) - 1;
+    live_->follow(
+        {picked_->first, picked_->second, static_cast<std::uint64_t>(std::clamp<std::int64_t>(iteration, 0, last))},
+        false);
+}
+
+void Interface::follow_brightest() {
+    if (!picked_) return tell("Pick a pixel first: click on it.");
+    live_->follow({picked_->first, picked_->second, 0}, true);
+}
 
 }  // namespace lightswitch::program

@@ -98,6 +98,7 @@ private:
     void verdict_panel();
     void plot_panel(float width);
     void pixel_panel();
+    void path_window();
     void problems_panel();
 
     void begin_save(const std::string& ending);
@@ -105,6 +106,8 @@ private:
     void open(const std::string& scene);
     void set_view(View view);
     void pick(int x, int y);
+    void follow(std::int64_t iteration);
+    void follow_brightest();
     void auto_expose();
     void next_non_finite();
     void tell(std::string message);

@@ -1,7 +1,6 @@
 #include "live_scene.hpp"
 
 #include "../method_options.hpp"
-#include "../run.hpp"
 
 #include <lightswitch/compare/metrics.hpp>
 
@@ -198,6 +197,7 @@ bool LiveScene::update() {
         }
         measured_with_ = 0;
         verdict_.stop();
+        followed_.stop();
         moved_ = Clock::now();
         changed = true;
     }
@@ -284,6 +284,32 @@ std::shared_ptr<const std::vector<Layer>> LiveScene::outputs() {
         });
     }
     return outputs_.result();
+}
+
+void LiveScene::follow(const ReplayedPixel& at, bool brightest) {
+    const LiveMethod& shown = methods_[shown_];
+    if (!shown.snapshot || shown.snapshot->iterations == 0) return;
+    followed_.start([=, scene = live_.scene(), method = shown.method, name = shown.name, settings = settings_,
+                     wake = wake_,
+                     iterations = shown.snapshot->iterations](const std::stop_token& stop, const auto& publish) {
+        FollowedPath path{.at = at, .method = name, .replay = {}, .brightest = {}, .problem = {}};
+        Settings own = settings;
+        own.stop = stop;
+        // Splats of other pixels' paths would take a whole iteration of bdpt.
+        const ReplayOptions options{.others = false};
+        try {
+            if (brightest) {
+                path.brightest = run_brightest(*scene, method, own, at, iterations, options);
+                path.at.iteration = path.brightest->iteration;
+            }
+            if (!stop.stop_requested()) path.replay = run_replay(*scene, method, own, path.at, options);
+        } catch (const std::exception& error) {
+            path.problem = error.what();
+        }
+        if (stop.stop_requested()) return;
+        publish(std::move(path));
+        wake();
+    });
 }
 
 Image LiveScene::image_to_save(std::size_t method) const {

@@ -4,6 +4,7 @@
 
 #include "../load.hpp"
 #include "../program.hpp"
+#include "../run.hpp"
 #include "background.hpp"
 #include "camera_control.hpp"
 
@@ -42,6 +43,15 @@ struct VerdictSoFar {
     VerifyProgress progress;
     std::string problem;  ///< why there is none
     bool done = false;
+};
+
+/// How a sample of a pixel came about.
+struct FollowedPath {
+    ReplayedPixel at;
+    std::string method;
+    std::optional<PathReplay> replay;
+    std::optional<BrightestSample> brightest;  ///< where that was looked for
+    std::string problem;                       ///< why there is none
 };
 
 /// Renders, compares and verifies in the background. To be used from one thread; `wake` is called on others when there
@@ -86,6 +96,11 @@ public:
     /// Albedo, normal and depth as layers; empty before they are there. Asking makes them.
     std::shared_ptr<const std::vector<Layer>> outputs();
 
+    /// Repeats that sample by the shown method, or first looks for the brightest of those that there are.
+    void follow(const ReplayedPixel& at, bool brightest);
+    /// Empty before it is known; forgotten when the camera moves.
+    std::shared_ptr<const FollowedPath> followed() const { return followed_.result(); }
+
     /// The image as `render` would save it.
     Image image_to_save(std::size_t method) const;
     void saved(std::size_t method) { methods_[method].unsaved = false; }
@@ -116,6 +131,7 @@ private:
     std::chrono::steady_clock::time_point moved_{};
     Background<std::vector<Layer>> outputs_;
     std::optional<std::uint64_t> outputs_view_;
+    Background<FollowedPath> followed_;
     InteractiveRender<AnyScene> live_;
 };
 

@@ -3,6 +3,7 @@
 #include "interface.hpp"
 
 #include "../method_notes.hpp"
+#include "../replay_row.hpp"
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -249,6 +250,55 @@ void Interface::pixel_panel() {
     describe(live_->shown_method());
     if (const LiveMethod* reference = live_->reference_method(); reference && live_->reference() != live_->shown())
         describe(*reference);
+}
+
+/// The path of the picked pixel's sample, a row for each event.
+void Interface::path_window() {
+    const auto path = picked_ ? live_->followed() : nullptr;
+    if (!path || path->at.x != picked_->first || path->at.y != picked_->second) return;
+    const ImGuiIO& io = ImGui::GetIO();
+    const float height = std::min(260 * window_.scale(), io.DisplaySize.y / 2);
+    const float width =
+        io.DisplaySize.x - (shows_panel_ ? std::min(340 * window_.scale(), 0.6f * io.DisplaySize.x) : 0);
+    ImGui::SetNextWindowPos({0, io.DisplaySize.y - ImGui::GetFrameHeight() - height}, ImGuiCond_Appearing);
+    ImGui::SetNextWindowSize({width, height}, ImGuiCond_Appearing);
+    bool stays = true;
+    ImGui::Begin("Path", &stays, ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing);
+    ImGui::TextUnformatted(fmt::format("{}, pixel ({}, {}), iteration {}   Y later, Shift+Y earlier, U brightest",
+                                       path->method, path->at.x, path->at.y, path->at.iteration)
+                               .c_str());
+    if (const auto& b = path->brightest)
+        ImGui::TextUnformatted(
+            fmt::format("the brightest of {} samples, whose mean is {}", b->tried, text_of(b->mean)).c_str());
+    if (!path->problem.empty()) ImGui::TextWrapped("%s", path->problem.c_str());
+    if (path->replay && ImGui::BeginTable("events", 5,
+                                          ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_RowBg |
+                                              ImGuiTableFlags_ScrollX | ImGuiTableFlags_ScrollY,
+                                          {0, -ImGui::GetTextLineHeightWithSpacing()})) {
+        Rgb sum(0);
+        for (const PathEvent& event : path->replay->events) {
+            using Kind = PathEvent::Kind;
+            if (event.kind == Kind::contribution) sum += event.value;
+            const ReplayRow row = replay_row(event, sum);
+            ImGui::TableNextRow();
+            const bool counts =
+                event.kind == Kind::contribution || event.kind == Kind::sample || event.kind == Kind::splat;
+            for (const std::string* cell : {&row.vertex, &row.what, &row.first, &row.second, &row.rest}) {
+                ImGui::TableNextColumn();
+                if (counts) ImGui::TextColored(yellow, "%s", cell->c_str());
+                else ImGui::TextUnformatted(cell->c_str());
+            }
+            if (event.kind == Kind::sample) sum = Rgb(0);
+        }
+        ImGui::EndTable();
+    }
+    if (path->replay)
+        ImGui::TextUnformatted(
+            fmt::format("film {}{}", text_of(path->replay->value()),
+                        path->replay->explained ? ": the contributions add up to it, bit for bit" : "")
+                .c_str());
+    ImGui::End();
+    if (!stays) picked_.reset();
 }
 
 /// What should not be overlooked.

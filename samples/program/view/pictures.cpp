@@ -11,8 +11,8 @@
 namespace lightswitch::program {
 namespace {
 
-/// `to_srgb8` by a table: a window does it many times a second. The table is fine enough that its cells hold at most one
-/// step between codes, which is then found exactly.
+/// `to_srgb8` by a table, as a window does it many times a second: the code at the begin of a small cell, from which
+/// the exact one is few steps away.
 class SrgbCodes {
 public:
     SrgbCodes() {
