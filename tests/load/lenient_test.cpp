@@ -80,9 +80,9 @@ TEST_CASE("surface models that are not known are the one inside, or diffuse") {
     CHECK(material("<bsdf type=\"hk\"><rgb name=\"reflectance\" value=\"0.1 0.2 0.3\"/></bsdf>", diffuse)
               .bsdf.as<Lambert>()
               .reflectance == Rgb(0.1f, 0.2f, 0.3f));
-    for (const char* type : {"coating", "roughcoating", "sssbrdf"})
+    for (const char* type : {"varnish", "sssbrdf"})
         CHECK(material("<bsdf type=\"" + std::string(type) + "\">" + metal + "</bsdf>", inside).bsdf.get<Conductor>());
-    const Read both = lenient("<shape type=\"cube\"><bsdf type=\"coating\"><bsdf type=\"varnish\">" + metal +
+    const Read both = lenient("<shape type=\"cube\"><bsdf type=\"lacquer\"><bsdf type=\"varnish\">" + metal +
                               "</bsdf></bsdf></shape>");
     CHECK(both.problems.size() == 2);
     CHECK(both.scene.materials[both.scene.shapes[0].material].bsdf.get<Conductor>());

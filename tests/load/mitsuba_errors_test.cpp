@@ -213,7 +213,7 @@ TEST_CASE("what a scene file cannot say is refused with file, line and element")
         {"<shape type=\"cube\"><transform name=\"to_uv\"/></shape>", "unknown parameter \"to_uv\""},
 
         {"<bsdf type=\"hair\"/>", "room.xml:3: <bsdf type=\"hair\">: unknown type \"hair\"; known are diffuse"},
-        {"<bsdf type=\"coating\"><bsdf type=\"diffuse\"/></bsdf>", "unknown type \"coating\""},
+        {"<bsdf type=\"varnish\"><bsdf type=\"diffuse\"/></bsdf>", "unknown type \"varnish\""},
         {"<bsdf type=\"diffuse\" id=\"a\"/>\n<bsdf type=\"diffuse\" id=\"a\"/>",
          "room.xml:4: <bsdf type=\"diffuse\">: the id \"a\" is already taken in line 3"},
         {"<shape type=\"cube\"><ref id=\"a\"/></shape>",

@@ -3,6 +3,7 @@
 #include <lightswitch/load/metals.hpp>
 #include <lightswitch/load/mitsuba_upgrade.hpp>
 #include <lightswitch/load/scene_file.hpp>
+#include <lightswitch/scene/check.hpp>
 
 using namespace lightswitch;
 using namespace lightswitch::test;
@@ -169,4 +170,74 @@ TEST_CASE("textures of version 0.6") {
         "<shape type=\"rectangle\"><bsdf type=\"bumpmap\"><texture type=\"scale\"><float name=\"scale\" value=\"3\"/>"
         "<texture type=\"checkerboard\"/></texture><bsdf type=\"diffuse\"/></bsdf></shape>");
     CHECK(std::get<BumpMap>(*bump.materials[bump.shapes[0].material].layer).scale == 3);
+}
+
+TEST_CASE("coats of version 0.6") {
+    const auto coat = [](const std::string& version, const std::string& text) {
+        const auto scene = load_version(version, "<shape type=\"rectangle\">" + text + "</shape>");
+        const auto& layer = scene.materials.at(scene.shapes.at(0).material).layer;
+        REQUIRE(layer);
+        const auto coating = std::get<Coating>(*layer);
+        CHECK(scene.materials.at(coating.inner).bsdf.get<RoughConductor>());
+        return coating.coat;
+    };
+    const std::string metal = "<bsdf type=\"roughconductor\"/></bsdf>";
+    const Coat usual = coat("0.5.0", "<bsdf type=\"coating\">" + metal);
+    CHECK(usual.eta == static_cast<float>(1.5046 / 1.000277));
+    CHECK(usual.smooth());
+    CHECK(usual.thickness == 1);
+    CHECK(is_black(usual.sigma_a));
+    CHECK(usual.specular_reflectance == Rgb(1));
+
+    const Coat tinted = coat("0.5.0",
+                             "<bsdf type=\"coating\"><string name=\"intIOR\" value=\"diamond\"/><float name=\"extIOR\" "
+                             "value=\"1\"/><rgb name=\"sigmaA\" value=\"0.1 2 30\"/><float name=\"thickness\" "
+                             "value=\"2\"/><spectrum name=\"specularReflectance\" value=\"0.5\"/>" +
+                                 metal);
+    CHECK(tinted.eta == 2.419f);
+    CHECK(tinted.sigma_a == Rgb(0.1f, 2, 30));
+    CHECK(tinted.thickness == 2);
+    CHECK(tinted.specular_reflectance == Rgb(0.5f));
+
+    const Coat rough =
+        coat("3.0.0",
+             "<bsdf type=\"roughcoating\"><float name=\"int_ior\" value=\"1.7\"/><float name=\"ext_ior\" "
+             "value=\"1\"/><float name=\"alpha\" value=\"0.2\"/><string name=\"distribution\" "
+             "value=\"ggx\"/><rgb name=\"sigma_a\" value=\"1\"/>" +
+                 metal);
+    CHECK(rough.eta == 1.7f);
+    CHECK(rough.alpha == 0.2f);
+    CHECK(rough.distribution == Facets::ggx);
+    CHECK(rough.sigma_a == Rgb(1));
+    const Coat usual_rough = coat("0.6.0", "<bsdf type=\"roughcoating\">" + metal);
+    CHECK(usual_rough.alpha == 0.1f);
+    CHECK(usual_rough.distribution == Facets::beckmann);
+}
+
+TEST_CASE("coats that cannot be are told, and read without") {
+    const auto check = [](const std::string& bsdf, const std::string& problem, const std::string& instead) {
+        CAPTURE(problem);
+        const Folder folder;
+        const std::string file =
+            folder.write("room.xml", "<scene version=\"0.6.0\"><shape type=\"rectangle\">" + bsdf + "</shape></scene>");
+        CHECK(contains(message_of([&] { load_mitsuba(file); }), problem));
+        Problems problems;
+        const auto scene = load_mitsuba(file, MitsubaOptions{.strictness = Strictness::lenient, .problems = &problems});
+        CHECK_NOTHROW(detail::check(scene));
+        REQUIRE(problems.size() == 1);
+        CHECK(contains(problems[0].instead, instead));
+        return scene.materials.at(scene.shapes.at(0).material);
+    };
+    const std::string grey = "<bsdf type=\"diffuse\"/>";
+    CHECK_FALSE(check("<bsdf type=\"coating\"/>", "needs exactly one bsdf inside, not 0", "it is diffuse").layer);
+    const auto masked = check("<bsdf type=\"coating\"><bsdf type=\"mask\">" + grey + "</bsdf></bsdf>",
+                              "a coat cannot lie over another layer that is a mask", "the coat is left out");
+    CHECK(std::holds_alternative<Mask>(masked.layer.value()));
+    const auto mirror = check("<bsdf type=\"roughcoating\"><bsdf type=\"conductor\"/></bsdf>",
+                              "a rough coat cannot lie over what is specular", "it is smooth");
+    CHECK(std::get<Coating>(mirror.layer.value()).coat.smooth());
+    check("<bsdf type=\"coating\"><float name=\"thickness\" value=\"-1\"/>" + grey + "</bsdf>",
+          "<float name=\"thickness\">: -1, which is outside 0", "it is 0");
+    check("<bsdf type=\"coating\"><texture name=\"sigmaA\" type=\"checkerboard\"/>" + grey + "</bsdf>",
+          "does not belong into", "it is left out");
 }

@@ -65,3 +65,46 @@ TEST_CASE("layers: what is impossible is refused with a reason") {
     CHECK(message_of([&] { build_scene<AllBsdfs, AllLights>(plain); }).find("no place for layers") !=
           std::string::npos);
 }
+
+TEST_CASE("layers: coats lie over models, blends and two sides, and under anything") {
+    LibraryDescription scene;
+    const std::size_t grey = scene.add(Lambert{}), mirror = scene.add(Conductor{});
+    scene.add(Blend{grey, mirror, half});
+    scene.add(Coating{2, {}});
+    scene.add(BothSides{3, grey});
+    scene.add(BumpMap{4, half});
+    CHECK(refusal(luminous_ball(scene)) == "(no error)");
+    scene.materials[3].layer = Coating{2, {.alpha = 0.3f}};
+    CHECK(refusal(luminous_ball(scene)).find("a rough coat cannot lie over a mirror") != std::string::npos);
+    scene.materials[3].layer = Coating{2, {.eta = 0}};
+    CHECK(refusal(luminous_ball(scene)).find("eta is 0") != std::string::npos);
+    scene.materials[3].layer = Coating{9, {}};
+    CHECK(refusal(luminous_ball(scene)).find("the material inside does not exist") != std::string::npos);
+    scene.materials[3].layer = Coating{2, {}};
+    scene.add(Coating{5, {}});
+    CHECK(refusal(luminous_ball(scene)).find("cannot lie over another layer that is a bump map") != std::string::npos);
+    scene.materials[6].layer = Coating{4, {}};
+    CHECK(refusal(luminous_ball(scene)).find("cannot lie over another layer that is a coat") != std::string::npos);
+    scene.materials[4].layer = Mask{0, half};
+    CHECK(refusal(scene).find("cannot lie over another layer that is a mask") != std::string::npos);
+}
+
+TEST_CASE("layers: a smooth coat is a mirror, and what is below is asked inside of it") {
+    LibraryDescription scene;
+    scene.add(Lambert{Rgb(0.5f)});
+    scene.add(Coating{0, {.eta = 1.5f}});
+    scene.add(Sphere{}, 1);
+    scene.materials[1].two_sided = true;
+    scene.camera.to_world[3] = glm::dvec4(0, 0, -5, 1);
+    const auto coated = build_scene<TexturedBsdfs, AllLights>(scene);
+    CHECK(coated.has_specular());
+    const auto point = coated.intersect({.origin = {0, 0, -4}, .direction = {0, 0, 1}});
+    REQUIRE(point);
+    CHECK(coated.presence(*point) == 1);
+    const Vec3 up(0, 0, 1);
+    const float value =
+        coated.with_bsdf(*point, [&](const auto& bsdf) { return bsdf.evaluate(up, up, Transport::radiance).value.x; });
+    CHECK(std::abs(value - 0.96f * 0.96f * 0.5f * inv_pi / 2.25f) < 1e-6f);
+    scene.materials[1].layer = Coating{0, {.eta = 1.5f, .alpha = 0.2f}};
+    CHECK_FALSE(build_scene<TexturedBsdfs, AllLights>(scene).has_specular());
+}

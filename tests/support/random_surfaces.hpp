@@ -15,7 +15,7 @@ public:
 
     /// A material with layers over it, perhaps; masked only if `masks`.
     std::size_t any(bool masks = true) {
-        switch (below(8)) {
+        switch (below(9)) {
             case 0: return scene_.add(Blend{model(), model(), pattern()});
             case 1: return masks ? scene_.add(Mask{model(), pattern()}) : model();
             case 2: {
@@ -27,6 +27,7 @@ public:
                 return scene_.add(NormalMap{model(), bitmap(true), flips, below(2) == 0});
             }
             case 4: return scene_.add(BothSides{opaque(), opaque()});
+            case 5: return coated();
             default: return model();
         }
     }
@@ -129,6 +130,24 @@ private:
                            "base_color");
             default: return both_sides(opaque());
         }
+    }
+
+    /// Perhaps under a map, which turns the coat, too, or over a blend.
+    std::size_t coated() {
+        Coat coat{.eta = float(number(0.8, 1.8)), .specular_reflectance = color(0.5, 1)};
+        coat.sigma_a = color(0, 0.4);
+        coat.thickness = float(number(0, 2));
+        const bool is_rough = below(2) == 0;
+        if (is_rough) {  // few of them, as each costs a table, and over no mirror
+            coat.eta = 1.5f;
+            coat.alpha = 0.4f;
+            coat.distribution = facets();
+        }
+        const auto inner = [&] { return is_rough ? add(Lambert{color(0.1, 0.9)}, "reflectance") : model(); };
+        const std::size_t coating =
+            scene_.add(Coating{below(3) == 0 ? scene_.add(Blend{inner(), inner(), pattern()}) : inner(), coat});
+        if (below(4) == 0) return scene_.add(NormalMap{coating, bitmap(true), below(2) == 0});
+        return coating;
     }
 
     Principled disney(float transmission) {

@@ -50,6 +50,8 @@ public:
     bool transmits_light() const { return model_->transmits_light(); }
     /// Of a surface model whether it looks the same however it is turned; true of what differs from place to place.
     bool isotropic() const { return model_->isotropic(); }
+    /// Whether all lobes of its surface model are Dirac distributions.
+    bool specular() const { return model_->specular(); }
     /// What the surface model is called in scene files; empty if it says nothing of that.
     std::string_view model_name() const { return model_->model_name(); }
     /// Whether it may differ from place to place.
@@ -62,6 +64,7 @@ private:
         virtual std::string problem() const = 0;
         virtual bool transmits_light() const = 0;
         virtual bool isotropic() const = 0;
+        virtual bool specular() const = 0;
         virtual std::string_view model_name() const = 0;
         virtual bool placed() const = 0;
     };
@@ -75,6 +78,7 @@ private:
             if constexpr (Bsdf<M>) return is_isotropic(material);
             else return true;
         }
+        bool specular() const override { return model_of<M>::specular; }
         std::string_view model_name() const override { return detail::model_name<M>(); }
         bool placed() const override { return PlacedMaterial<M>; }
 

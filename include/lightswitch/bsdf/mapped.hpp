@@ -1,15 +1,15 @@
 #pragma once
 
-// A surface model under a shading normal that a bump or normal map has turned.
+// A surface model under a shading normal that a bump or normal map has turned, and under a coat.
 
-#include <lightswitch/bsdf/bsdf.hpp>
+#include <lightswitch/bsdf/coat.hpp>
 
 namespace lightswitch {
 
 /// How a map has turned the shading normal at a point, in the frame of the turned normal.
 struct MappedNormal {
     Vec3 before{0, 0, 1};  ///< the normal before, with z > 0
-    bool active = false;   ///< false where no map is
+    bool active = false;   ///< false where no map is, and no coat, over which a map may be that turns nothing
     bool flips = false;    ///< where the camera could not see the turned surface, the turn goes the other way
     bool shadows = false;  ///< dims what comes in at grazing angles, see `Mapped`
 };
@@ -26,9 +26,12 @@ struct MappedNormal {
 ///
 /// All that depends on which of the two directions is on the camera's side: `wo` for radiance, `wi` for importance. So
 /// methods that trace light see the same surface; they try both normals, by chance.
+///
+/// With a `coat`, which needs an active map, the model is under that one: it has the turned normal, too.
 template <Bsdf B>
 struct Mapped : B {
     MappedNormal map;
+    const detail::CoatOptics* coat = nullptr;
 
     BsdfValue evaluate(const Vec3& wo, const Vec3& wi, Transport transport) const {
         if (map.active) [[unlikely]]
@@ -47,7 +50,7 @@ private:
         const bool flipped = is_flipped(from_camera ? wo : wi);
         if (!keeps(wo, flipped) || !keeps(wi, flipped)) return {};
         const Vec3 seen_wo = seen(wo, flipped), seen_wi = seen(wi, flipped);
-        BsdfValue result = B::evaluate(seen_wo, seen_wi, transport);
+        BsdfValue result = coated_value(seen_wo, seen_wi, transport);
         // Methods multiply by the cosine of the light in the frame that is not flipped.
         const Vec3 &light = from_camera ? wi : wo, &seen_light = from_camera ? seen_wi : seen_wo;
         result.value *= light.z != 0 ? std::abs(seen_light.z / light.z) * shadow(light) : 0.0f;
@@ -87,7 +90,7 @@ private:
     Maybe<BsdfSample> sample_from(const Vec3& wo, const Vec3& u, Transport transport, bool flipped) const {
         if (!keeps(wo, flipped)) return {};
         const Vec3 seen_wo = seen(wo, flipped);
-        Maybe<BsdfSample> result = B::sample(seen_wo, u, transport);
+        Maybe<BsdfSample> result = coated_sample(seen_wo, u, transport);
         if (!result) return {};
         const Vec3 seen_wi = result->wi, wi = seen(seen_wi, flipped);
         if (!keeps(wi, flipped)) return {};
@@ -106,6 +109,39 @@ private:
         if (chosen) result->reversal *= from_camera ? 0.5f : 2.0f;
         result->wi = wi;
         return result;
+    }
+
+    [[gnu::noinline]] BsdfValue coated_value(const Vec3& wo, const Vec3& wi, Transport transport) const {
+        detail::CoatEntry from{.inside = wo}, to{.inside = wi};
+        if (coat) from = coat->enter(wo), to = coat->enter(wi);
+        BsdfValue result;
+        if (from.inside.z != 0 && to.inside.z != 0) result = B::evaluate(from.inside, to.inside, transport);
+        return coat ? coat->value(wo, wi, from, to, result) : result;
+    }
+
+    /// Chooses by `u.z` what the coat reflects, or what is below.
+    Maybe<BsdfSample> coated_sample(const Vec3& wo, const Vec3& u, Transport transport) const {
+        detail::CoatEntry from{.inside = wo};
+        Vec3 below = u;
+        if (coat) {
+            from = coat->enter(wo);
+            if (u.z < from.coat_probability)
+                return coat->smooth() ? coat->mirrored(wo, from) : facet_sample(wo, u, transport);
+            if (!(from.base_probability > 0)) return {};
+            below.z = std::min((u.z - from.coat_probability) / from.base_probability, 1 - unit_roundoff);
+        }
+        Maybe<BsdfSample> result = B::sample(from.inside, below, transport);
+        if (coat && result && !coat->leave(wo, from, *result)) return {};
+        return result;
+    }
+
+    /// From a facet of a rough coat.
+    [[gnu::noinline]] Maybe<BsdfSample> facet_sample(const Vec3& wo, const Vec3& u, Transport transport) const {
+        const Vec3 wi = coat->reflected(wo, Vec2(u));
+        if (wi.z == 0) return {};
+        const BsdfValue all = coated_value(wo, wi, transport);
+        if (!(all.pdf.value > 0)) return {};
+        return BsdfSample{.wi = wi, .weight = all.value * (std::abs(wi.z) / all.pdf.value), .pdf = all.pdf};
     }
 };
 

@@ -2,6 +2,7 @@
 
 // Surface models in Mitsuba's scene files.
 
+#include <lightswitch/bsdf/coat.hpp>
 #include <lightswitch/load/metals.hpp>
 #include <lightswitch/load/mitsuba_texture.hpp>
 
@@ -64,9 +65,8 @@ void read_parameters(XmlElement& element, B& model) {
         if constexpr (std::is_same_v<std::remove_cvref_t<decltype(model.*parameter.member)>, float>) {
             if (const auto value = element.number(name)) parameter.set(model, in_range(static_cast<float>(*value)));
         } else {
-            const Rgb value =
-                element.color(name, model.*parameter.member,
-                              name == "eta" || name == "k" ? SpectrumUse::index : SpectrumUse::reflectance);
+            const Rgb value = element.color(name, model.*parameter.member,
+                                            parameter.range.most > 1 ? SpectrumUse::index : SpectrumUse::reflectance);
             parameter.set(model, {in_range(value.x), in_range(value.y), in_range(value.z)});
         }
     });
@@ -92,6 +92,17 @@ inline Facets read_facets(XmlElement& element) {
     static const std::map<std::string, Facets> distributions{{"beckmann", Facets::beckmann}, {"ggx", Facets::ggx}};
     element.boolean("sample_visible", true);  // changes only the noise
     return element.one_of("distribution", "beckmann", distributions);
+}
+
+/// What `coating` and `roughcoating` of Mitsuba 0.6 say of the coat.
+inline Coat read_coat(XmlElement& element) {
+    Coat coat{.eta = read_relative_index(element, "bk7")};
+    if (element.type() == "roughcoating") {
+        coat.distribution = read_facets(element);
+        coat.alpha = clamped(element, "alpha", as_roughness, static_cast<float>(element.number("alpha", 0.1)));
+    }
+    read_parameters(element, coat);
+    return coat;
 }
 
 /// Reads a `<bsdf>` that is a surface model, with Mitsuba's defaults for what is left out.
@@ -127,8 +138,8 @@ public:
         if (type == "ward") return ward();
         element_.unknown_type(
             "diffuse, conductor, roughconductor, dielectric, roughdielectric, thindielectric, plastic, roughplastic, "
-            "principled, principledthin, roughdiffuse, phong, ward, twosided, mask, null, blendbsdf, bumpmap and "
-            "normalmap");
+            "principled, principledthin, roughdiffuse, phong, ward, coating, roughcoating, twosided, mask, null, "
+            "blendbsdf, bumpmap and normalmap");
     }
 
 private:

@@ -110,6 +110,7 @@ private:
             element.finish();
             return add(Mask{by_default(true, origin), Texture(Rgb(0))}, origin);
         }
+        if (type == "coating" || type == "roughcoating") return read_coating(element);
         if (type == "bumpmap") {
             BumpMap map{.inner = 0, .height = Texture(Rgb(0))};
             map.scale = static_cast<float>(element.number("scale", 1));
@@ -145,6 +146,21 @@ private:
             mixture = add(Blend{mixture, inner[i], Texture(Rgb(static_cast<float>(share)))}, element.origin());
         }
         return mixture;
+    }
+
+    std::size_t read_coating(XmlElement& element) {
+        Coating coating{.inner = 0, .coat = read_coat(element)};
+        coating.inner = read_one(element);
+        element.finish();
+        const auto is_specular = [](const auto& material) { return !material.layer && material.bsdf.specular(); };
+        if (!coating.coat.smooth() && any_below(scene_, coating.inner, is_specular)) {
+            element.problem("", "a rough coat cannot lie over what is specular as a whole", "it is smooth");
+            coating.coat.alpha = 0;
+        }
+        const std::string problem = coating_problem(scene_, coating);
+        if (problem.empty()) return add(std::move(coating), element.origin());
+        element.problem("", problem, "the coat is left out");
+        return coating.inner;
     }
 
     std::size_t finish_map(XmlElement& element, auto map) {

@@ -60,6 +60,12 @@ private:
                  "this scene type has no place for layers of materials; put a Textured<...> into the scene's "
                  "Bsdfs<...>");
         for (const std::size_t inner : below(layer)) add_material(description, inner);
+        if (const auto* coating = std::get_if<Coating>(&layer)) {
+            if (!coating->coat.smooth() && has_specular_model(indices_[coating->inner]))
+                fail(material.origin,
+                     "a rough coat cannot lie over a mirror, or over other models without a smooth lobe");
+            data_.coats.push_back(CoatOptics(coating->coat));
+        }
         check_count(data_.layers.size(), MaterialIndex::max_position, material.origin, "layers of materials");
         indices_[number] = MaterialIndex(layers, data_.layers.size(),
                                          MaterialIndex::varying | (material.two_sided ? MaterialIndex::both_sides : 0));
@@ -87,6 +93,11 @@ private:
         ways_.push_back(layer.certain ? 1 : ways);
     }
 
+    bool has_specular_model(MaterialIndex material) const {
+        const bool is_layer = material.kind() == layers;
+        return is_layer ? !data_.layers[material.position()].certain : Data::is_specular[material.kind()];
+    }
+
     LayerRecord record(const MaterialLayer& layer) const {
         using Kind = LayerRecord::Kind;
         if (const auto* blend = std::get_if<Blend>(&layer))
@@ -99,6 +110,11 @@ private:
             return {Kind::bump_map, {indices_[bump->inner]},
                     bump->height,   static_cast<float>(data_.space.length(double(bump->scale))),
                     bump->flips,    bump->shadows};
+        if (const auto* coating = std::get_if<Coating>(&layer)) {
+            LayerRecord result{Kind::coat, {indices_[coating->inner]}};
+            result.coat = data_.coats.size() - 1;
+            return result;
+        }
         const auto& sides = std::get<BothSides>(layer);
         return {Kind::both_sides, {indices_[sides.front], indices_[sides.back]}};
     }

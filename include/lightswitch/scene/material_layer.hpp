@@ -3,6 +3,7 @@
 // What lies over surface models: layers, which name other materials of a description by their numbers. They may be
 // nested in any way, and add no type to a scene: a ray that meets them is led to one surface model.
 
+#include <lightswitch/bsdf/coat.hpp>
 #include <lightswitch/texture/texture.hpp>
 
 #include <string_view>
@@ -51,11 +52,19 @@ struct BothSides {
     std::size_t front, back;
 };
 
-using MaterialLayer = std::variant<Blend, Mask, BumpMap, NormalMap, BothSides>;
+/// `inner` under a coat: not a mask, a map or another coat, which may lie over it but not below. Under a rough coat
+/// `inner` has no model that is specular as a whole, such as a mirror.
+struct Coating {
+    std::size_t inner;
+    Coat coat;
+};
+
+using MaterialLayer = std::variant<Blend, Mask, BumpMap, NormalMap, BothSides, Coating>;
 
 /// What the layer is called in lists.
 inline std::string_view layer_name(const MaterialLayer& layer) {
-    constexpr std::string_view names[] = {"blend", "mask", "bump map", "normal map", "two models, one on each side"};
+    constexpr std::string_view names[] = {"blend", "mask", "bump map", "normal map", "two models, one on each side",
+                                          "coat"};
     static_assert(std::size(names) == std::variant_size_v<MaterialLayer>);
     return names[layer.index()];
 }

@@ -124,11 +124,16 @@ float presence(const auto& data, const PlacedPoint<M...>& point) {
     return presence(data, point.outermost, point.uv, point.behind);
 }
 
+/// What layers do to the model below them.
+struct Overlay {
+    MappedNormal map;                  ///< all but the normal before, for which the frame must be known
+    const CoatOptics* coat = nullptr;  ///< if there is one
+};
+
 /// Goes down the layers over a point until a surface model is reached, which becomes the point's material; false where
-/// the surface is not there. `tangents()` is asked when a layer needs them; `map` says what maps have done to the
-/// shading normal, all but the normal before, for which the frame must be known.
+/// the surface is not there. `tangents()` is asked when a layer needs them.
 template <std::size_t layers>
-bool resolve_layers(const auto& data, const Vec2& uv, SurfacePoint& point, MappedNormal& map, const auto& tangents) {
+bool resolve_layers(const auto& data, const Vec2& uv, SurfacePoint& point, Overlay& over, const auto& tangents) {
     LayerChoices choices(point);
     const Vec3 before = point.shading_normal;
     const bool behind = dot(point.wo, before) < 0;
@@ -138,7 +143,7 @@ bool resolve_layers(const auto& data, const Vec2& uv, SurfacePoint& point, Mappe
         const bool mirrored = two_sided && behind;
         point.shading_normal = mirrored ? normal - 2 * dot(normal, before) * before : normal;
         two_sided = false;
-        map = {.active = true, .flips = layer.flips, .shadows = layer.shadows};
+        over.map = {.active = true, .flips = layer.flips, .shadows = layer.shadows};
     };
     MaterialIndex next = point.material;
     while (next.kind() == layers) {
@@ -163,17 +168,21 @@ bool resolve_layers(const auto& data, const Vec2& uv, SurfacePoint& point, Mappe
                 next = layer.inner[behind ? 1 : 0];
                 two_sided = true;
                 break;
+            case LayerRecord::Kind::coat:
+                over.coat = &data.coats[layer.coat];
+                next = layer.inner[0];
+                break;
         }
         two_sided = two_sided || next.two_sided();
     }
-    if (map.active && two_sided) {  // below the map: which side is seen, the surface before the map says
+    if (over.map.active && two_sided) {  // below the map: which side is seen, the surface before the map says
         if (behind) point.shading_normal = -point.shading_normal;
         two_sided = false;
     }
     // The point keeps its model, even of a material that is the same everywhere. A turned normal says little about
     // where light comes from.
     const std::size_t flags = (two_sided ? MaterialIndex::both_sides : 0) | MaterialIndex::varying |
-                              (next.lit_through() || map.active ? MaterialIndex::through : 0);
+                              (next.lit_through() || over.map.active ? MaterialIndex::through : 0);
     point.material = MaterialIndex(next.kind(), next.position(), flags);
     return true;
 }
@@ -218,10 +227,10 @@ template <class Point>
     point.uv = on_sphere ? uv_on_sphere(local) : uv_on_triangle(data, hit);
     point.tangent = Vec3(0);
     const Vec3 normal_before = point.shading_normal;
-    MappedNormal map;
+    Overlay over;
     point.outermost = point.material;
     point.behind = dot(point.wo, normal_before) < 0;
-    if (point.material.kind() == kinds && !resolve_layers<kinds>(data, point.uv, point, map, tangents)) return false;
+    if (point.material.kind() == kinds && !resolve_layers<kinds>(data, point.uv, point, over, tangents)) return false;
     dispatch<kinds>(point.material.kind(), [&](auto kind) {
         const auto& material = std::get<kind>(data.bsdfs)[point.material.position()];
         using Model = model_of<std::remove_cvref_t<decltype(material)>>;
@@ -232,10 +241,14 @@ template <class Point>
             else return point.model.template emplace<kind>(Mapped<Model>{material.at(Place{point.uv, point}), {}});
         }();
         if (!is_isotropic(model)) point.tangent = tangents().u;
-        if (map.active) {
+        if (over.map.active) {
             const Vec3 before = point.shading_frame().to_local(normal_before);
-            map.before = before.z < 0 ? -before : before;
-            model.map = map;
+            over.map.before = before.z < 0 ? -before : before;
+            model.map = over.map;
+        }
+        if (over.coat) {
+            model.coat = over.coat;
+            model.map.active = true;
         }
     });
     return true;

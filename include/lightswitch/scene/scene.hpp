@@ -130,7 +130,7 @@ public:
     float presence(const Point& point) const { return detail::presence(data(), point); }
 
     /// Whether a material has a lobe that is a Dirac distribution: a mirror, clear glass, smooth plastic.
-    bool has_specular() const { return detail::any_dirac_lobe(data().bsdfs); }
+    bool has_specular() const { return detail::any_dirac_lobe(data()); }
 
     // --- lights
 

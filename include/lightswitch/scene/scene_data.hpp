@@ -55,14 +55,15 @@ struct SphereRecord {
 
 /// A layer as a scene keeps it. Materials of the kind after the last surface model stand for layers, by their position.
 struct LayerRecord {
-    enum class Kind { blend, mask, bump_map, normal_map, both_sides };
+    enum class Kind { blend, mask, bump_map, normal_map, both_sides, coat };
 
     Kind kind;
     std::array<MaterialIndex, 2> inner;
     Texture texture{Rgb(0)};
     float scale = 1;  ///< of a bump map in render space, of a normal map across the normal
     bool flips = false, shadows = false, against_v = false;
-    bool certain = true;  ///< whether all choices below lead to a model that is not specular
+    bool certain = true;   ///< whether all choices below lead to a model that is not specular
+    std::size_t coat = 0;  ///< which one, of a coat
 };
 
 /// The point that rays find in a scene of such materials.
@@ -90,6 +91,7 @@ struct SceneData<Bsdfs<B...>, Lights<L...>> {
     std::vector<std::uint32_t> first_uvs;
     std::vector<Mat3> sphere_axes;
     std::vector<LayerRecord> layers;
+    std::vector<CoatOptics> coats;
     bool masked = false;  ///< whether rays can go through a surface because of a `Mask`
     std::tuple<std::vector<B>...> bsdfs;
     std::tuple<std::vector<L>...> lights;
@@ -98,11 +100,11 @@ struct SceneData<Bsdfs<B...>, Lights<L...>> {
     SceneStatistics statistics;
 };
 
-/// Whether a material in any of the lists has a lobe that is a Dirac distribution.
-template <class... B>
-bool any_dirac_lobe(const std::tuple<std::vector<B>...>& all) {
+/// Whether a material or a coat has a lobe that is a Dirac distribution.
+bool any_dirac_lobe(const auto& data) {
     const auto found = [](const auto& bsdf) { return has_dirac_lobe(bsdf); };
-    return std::apply([&](const auto&... lists) { return (std::ranges::any_of(lists, found) || ...); }, all);
+    return std::ranges::any_of(data.coats, &CoatOptics::smooth) ||
+           std::apply([&](const auto&... lists) { return (std::ranges::any_of(lists, found) || ...); }, data.bsdfs);
 }
 
 /// What scenes with different cameras and instances in other places share.
