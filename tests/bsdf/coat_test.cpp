@@ -244,6 +244,14 @@ TEST_CASE("coat: extreme directions and parameters") {
     }
 }
 
+TEST_CASE("coat: it says whether something is a mirror") {
+    const detail::CoatOptics clear(Coat{}), frosted(Coat{.alpha = 0.3f});
+    CHECK_FALSE(has_dirac_lobe(Mapped<Lambert>{}));
+    CHECK(has_dirac_lobe(under(clear, Lambert{})));
+    CHECK_FALSE(has_dirac_lobe(under(frosted, Lambert{})));
+    CHECK(has_dirac_lobe(under(frosted, Plastic{})));
+}
+
 TEST_CASE("coat: impossible parameters are refused by name") {
     CHECK(Coat{}.problem().empty());
     CHECK(tinted.problem().empty());

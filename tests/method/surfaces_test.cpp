@@ -6,6 +6,7 @@
 #include "support/paths.hpp"
 
 #include <lightswitch/method/bdpt.hpp>
+#include <lightswitch/method/light_tracer.hpp>
 #include <lightswitch/method/photon_mapping.hpp>
 #include <lightswitch/method/vcm.hpp>
 #include <lightswitch/scene/any_scene.hpp>
@@ -95,8 +96,14 @@ TEST_CASE("surfaces: photons see layers that decide by chance, and coats, as pat
              const std::size_t mask = s.add(Mask{two_sided(s, Rgb(0.2f)), Texture(Rgb(0.5f))});
              return s.add(Blend{two_sided(s, Rgb(0.8f)), mask, Texture(Rgb(0.7f))});
          })},
-        {"plastic", make([&](auto& s) { return s.add(Plastic{.eta = 2}); })}};
-    constexpr int comparisons = 3 * static_cast<int>(std::size(scenes));
+        {"plastic", make([&](auto& s) { return s.add(Plastic{.eta = 2}); })},
+        {"coat", make([&](auto& s) {
+             return s.add(Coating{s.add(Lambert{Rgb(0.8f)}), {.eta = 2, .sigma_a = {0, 0.1f, 0.2f}}});
+         })},
+        {"rough coat", make([&](auto& s) {
+             return s.add(Coating{s.add(Lambert{Rgb(0.8f)}), {.sigma_a = {0, 0.1f, 0.2f}, .alpha = 0.4f}});
+         })}};
+    constexpr int comparisons = 4 * static_cast<int>(std::size(scenes));
     for (const auto& [name, scene] : scenes) {
         const Estimate truth = replicate(scene, PathTracerNee{.max_depth = 4}, 8, 8, 256).whole[1];
         const auto check = [&](const std::string& what, const auto& method, int samples) {
@@ -110,5 +117,6 @@ TEST_CASE("surfaces: photons see layers that decide by chance, and coats, as pat
         check("gathering", PhotonMapping{.max_depth = 4, .paths_per_pixel = 4, .radius = radius, .final_gather = true},
               64);
         check("vcm", Vcm{.max_depth = 4, .radius = radius}, 96);
+        if (!scene.has_specular()) check("light", LightTracer{.max_depth = 4}, 96);
     }
 }

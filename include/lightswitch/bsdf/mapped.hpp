@@ -43,6 +43,7 @@ struct Mapped : B {
             return mapped_sample(wo, u, transport);
         return B::sample(wo, u, transport);
     }
+    bool has_dirac_lobe() const { return lightswitch::has_dirac_lobe<B>(*this) || (coat != nullptr && coat->smooth()); }
 
 private:
     [[gnu::noinline]] BsdfValue mapped_value(const Vec3& wo, const Vec3& wi, Transport transport) const {

@@ -7,18 +7,24 @@ namespace lightswitch::test {
 namespace {
 
 using enum BsdfMistake;
-using Material = std::variant<PlantedLambert, PlantedDielectric, PlantedRoughConductor, Coated>;
-using PlantedScene = Scene<Bsdfs<PlantedLambert, PlantedDielectric, PlantedRoughConductor, Coated>,
+using Material = std::variant<PlantedLambert, PlantedDielectric, PlantedRoughConductor, PlantedCoat, Coated>;
+using PlantedScene = Scene<Bsdfs<PlantedLambert, PlantedDielectric, PlantedRoughConductor, PlantedCoat, Coated>,
                            Lights<ConstantEnvironment, TriangleLight>>;
 
 std::shared_ptr<const PlantedScene> build(const SceneDescription<Material>& description) {
     return std::make_shared<const PlantedScene>(
-        build_scene<Bsdfs<PlantedLambert, PlantedDielectric, PlantedRoughConductor, Coated>,
+        build_scene<Bsdfs<PlantedLambert, PlantedDielectric, PlantedRoughConductor, PlantedCoat, Coated>,
                     Lights<ConstantEnvironment, TriangleLight>>(description));
 }
 
 Estimator on_planted(const SceneDescription<Material>& description) {
     return estimator(build(description), PathTracerNee{});
+}
+
+/// `PlantedCoat` without a mistake as the library has it, in the place of the first material.
+LibraryDescription coated(LibraryDescription scene) {
+    scene.materials[0].layer = Coating{scene.add(PlantedCoat::base), PlantedCoat::coat};
+    return scene;
 }
 
 }  // namespace
@@ -59,6 +65,18 @@ std::vector<PlantedBug> bsdf_bugs() {
           rough);
     floor("GGX masking of one direction missing", PlantedRoughConductor{masking_one_sided}, rough);
 
+    const auto coat = [&](std::string_view name, BsdfMistake mistake) {
+        bugs.push_back({name, "floor-under-panel", 2, [=] {
+                            const Material material = PlantedCoat{mistake};
+                            const AnyMaterial any = Lambert{}, black = Lambert{Rgb(0)};
+                            return std::pair(on_planted(floor_under_panel(material, planted_black)),
+                                             library_nee(coated(floor_under_panel(any, black))));
+                        }});
+    };
+    coat("coat: 1 / eta^2 missing", coat_spreads_nothing);
+    coat("coat: absorbs on one of two ways", coat_absorbs_one_way);
+    coat("coat: density of the direction inside in the value alone", coat_density_of_inside);
+
     bugs.push_back({"albedo 0.5 % too high in the value alone", "floor-under-far-lamp", 2, [planted_black] {
                         const Material bright = PlantedLambert{value_half_percent_up, Rgb(0.7f)};
                         const AnyMaterial right = Lambert{Rgb(0.7f)}, black = Lambert{Rgb(0)};
@@ -89,6 +107,12 @@ std::vector<CorrectPair> bsdf_copies() {
              [] {
                  return std::pair(on_planted(ball_in_sky<Material>(PlantedDielectric{})),
                                   library_nee(ball_in_sky<AnyMaterial>(Dielectric{})));
+             }},
+            {"coat without a mistake", "floor-and-lamp",
+             [=] {
+                 const AnyMaterial any = Lambert{}, black = Lambert{Rgb(0)};
+                 return std::pair(on_planted(floor_and_lamp<Material>(PlantedCoat{}, planted_black)),
+                                  library_nee(coated(floor_and_lamp(any, black))));
              }},
             {"two lobes: path, path-nee", "floor-and-lamp", [=] {
                  const auto scene = build(floor_and_lamp<Material>(Coated{}, planted_black));

@@ -4,6 +4,7 @@
 
 #include <lightswitch/bsdf/dielectric.hpp>
 #include <lightswitch/bsdf/lambert.hpp>
+#include <lightswitch/bsdf/mapped.hpp>
 #include <lightswitch/bsdf/rough_conductor.hpp>
 
 namespace lightswitch::test {
@@ -23,6 +24,10 @@ enum class BsdfMistake {
     jacobian_missing,           ///< of the half vector, in the density
     jacobian_missing_in_value,  ///< the same where `evaluate` gives the density, not where `sample` does
     masking_one_sided,          ///< that of the direction of the light is missing
+    // of PlantedCoat
+    coat_spreads_nothing,    ///< light below keeps its radiance although it leaves through a larger solid angle
+    coat_absorbs_one_way,    ///< only what comes in
+    coat_density_of_inside,  ///< where `evaluate` gives it, not where `sample` does
     // of Coated
     lobe_shares_number,  ///< with the direction
 };
@@ -114,6 +119,45 @@ private:
         if (mistake == BsdfMistake::masking_one_sided && wi.z > 0)
             result.value *= 1 / Microfacets(Facets::ggx, alpha, alpha).masking(wi);
         return result;
+    }
+};
+
+/// `Lambert` under a `Coat`, with a mistake.
+struct PlantedCoat {
+    static constexpr bool specular = false;
+    static constexpr bool partly_specular = true;
+    static constexpr Lambert base{Rgb(0.7f)};
+    static constexpr Coat coat{.eta = 1.5f, .sigma_a = {0.1f, 0.3f, 0.6f}};
+
+    BsdfMistake mistake = BsdfMistake::none;
+
+    BsdfValue evaluate(const Vec3& wo, const Vec3& wi, Transport transport) const {
+        BsdfValue result = right().evaluate(wo, wi, transport);
+        result.value *= factor(wo);
+        if (mistake == BsdfMistake::coat_density_of_inside)
+            result.pdf.value *= coat.eta * coat.eta * inside(wi) / std::abs(wi.z);
+        return result;
+    }
+
+    Maybe<BsdfSample> sample(const Vec3& wo, const Vec3& u, Transport transport) const {
+        Maybe<BsdfSample> result = right().sample(wo, u, transport);
+        if (result && !result->specular) result->weight *= factor(wo);
+        return result;
+    }
+
+    std::string problem() const { return coat.problem(); }
+
+private:
+    static Mapped<Lambert> right() {
+        static const detail::CoatOptics optics(coat);
+        return {base, {.active = true}, &optics};
+    }
+    /// The cosine below.
+    static float inside(const Vec3& w) { return std::sqrt(coat.eta * coat.eta - (1 - w.z) * (1 + w.z)) / coat.eta; }
+    Rgb factor(const Vec3& wo) const {
+        if (mistake == BsdfMistake::coat_spreads_nothing) return Rgb(coat.eta * coat.eta);
+        if (mistake == BsdfMistake::coat_absorbs_one_way) return glm::exp(coat.thickness * coat.sigma_a / inside(wo));
+        return Rgb(1);
     }
 };
 

@@ -148,6 +148,8 @@ std::vector<PlantedBug> surface_bugs() {
     layered("bump map: height in half the unit", BumpMap{0, heights(1), 2}, BumpMap{0, heights(1), 1});
     layered("normal map: green points down", NormalMap{0, normals(-1)}, NormalMap{0, normals(1)});
     layered("normal map: without shadows", NormalMap{0, normals(1), true, false}, NormalMap{0, normals(1)});
+    layered("coat: index reversed", Coating{0, {.eta = 1 / 1.5f}}, Coating{0, {.eta = 1.5f}});
+    layered("coat: smooth", Coating{0, {}}, Coating{0, {.alpha = 0.4f}});
     layered("two sides: exchanged", BothSides{1, 0}, BothSides{0, 1});
 
     const auto textured = [&](std::string_view name, const Texture& wrong, const Texture& right) {
