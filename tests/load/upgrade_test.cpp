@@ -241,3 +241,21 @@ TEST_CASE("coats that cannot be are told, and read without") {
     check("<bsdf type=\"coating\"><texture name=\"sigmaA\" type=\"checkerboard\"/>" + grey + "</bsdf>",
           "does not belong into", "it is left out");
 }
+
+TEST_CASE("facets of Phong's model in version 0.6 are Beckmann's of the same roughness, and in version 3 a problem") {
+    for (const char* name : {"phong", "as", "Phong"}) {
+        const std::string shape =
+            "<shape type=\"rectangle\"><bsdf type=\"roughconductor\"><string "
+            "name=\"distribution\" value=\"" +
+            std::string(name) + "\"/><float name=\"alpha\" value=\"0.25\"/></bsdf></shape>";
+        Notices notices;
+        const auto scene = load_version("0.6.0", shape, &notices);
+        const auto metal = scene.materials.at(scene.shapes.at(0).material).bsdf.as<RoughConductor>();
+        CHECK(metal.distribution == Facets::beckmann);
+        CHECK(metal.alpha_u == 0.25f);
+        CHECK(std::ranges::any_of(notices, [](const std::string& notice) {
+            return contains(notice, "facets of Phong's model are taken for Beckmann's");
+        }));
+        CHECK(contains(message_of([&] { load_version("3.0.0", shape); }), "is not one of beckmann, ggx"));
+    }
+}

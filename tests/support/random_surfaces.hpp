@@ -15,7 +15,7 @@ public:
 
     /// A material with layers over it, perhaps; masked only if `masks`.
     std::size_t any(bool masks = true) {
-        switch (below(9)) {
+        switch (below(8)) {
             case 0: return scene_.add(Blend{model(), model(), pattern()});
             case 1: return masks ? scene_.add(Mask{model(), pattern()}) : model();
             case 2: {
@@ -27,9 +27,31 @@ public:
                 return scene_.add(NormalMap{model(), bitmap(true), flips, below(2) == 0});
             }
             case 4: return scene_.add(BothSides{opaque(), opaque()});
-            case 5: return coated();
             default: return model();
         }
+    }
+
+    /// A material under a coat: perhaps a blend, perhaps all under a map.
+    std::size_t coated() {
+        Coat coat{.eta = float(number(0.8, 1.8))};
+        coat.specular_reflectance = color(0.5, 1);
+        coat.sigma_a = color(0, 0.4);
+        coat.thickness = float(number(0, 2));
+        const bool is_rough = below(2) == 0;
+        if (is_rough) {  // few of them, as each costs a table, and over no mirror
+            coat.eta = 1.5f;
+            coat.alpha = 0.4f;
+            coat.distribution = facets();
+        }
+        const auto inner = [&] {
+            if (!is_rough) return model();
+            if (below(2) == 0) return add(Lambert{color(0.1, 0.9)}, "reflectance");
+            return add(RoughConductor{facets(), 0.3f, 0.5f, color(0.1, 2), color(1, 4), color(0.5, 1)}, "alpha_u");
+        };
+        std::size_t below_coat = inner();
+        if (below(3) == 0) below_coat = scene_.add(Blend{below_coat, inner(), pattern()});
+        const std::size_t coating = scene_.add(Coating{below_coat, coat});
+        return below(4) == 0 ? scene_.add(NormalMap{coating, bitmap(true)}) : coating;
     }
 
     int below(int n) { return static_cast<int>(random_.next() * static_cast<float>(n)); }
@@ -132,24 +154,6 @@ private:
         }
     }
 
-    /// Perhaps under a map, which turns the coat, too, or over a blend.
-    std::size_t coated() {
-        Coat coat{.eta = float(number(0.8, 1.8)), .specular_reflectance = color(0.5, 1)};
-        coat.sigma_a = color(0, 0.4);
-        coat.thickness = float(number(0, 2));
-        const bool is_rough = below(2) == 0;
-        if (is_rough) {  // few of them, as each costs a table, and over no mirror
-            coat.eta = 1.5f;
-            coat.alpha = 0.4f;
-            coat.distribution = facets();
-        }
-        const auto inner = [&] { return is_rough ? add(Lambert{color(0.1, 0.9)}, "reflectance") : model(); };
-        const std::size_t coating =
-            scene_.add(Coating{below(3) == 0 ? scene_.add(Blend{inner(), inner(), pattern()}) : inner(), coat});
-        if (below(4) == 0) return scene_.add(NormalMap{coating, bitmap(true), below(2) == 0});
-        return coating;
-    }
-
     Principled disney(float transmission) {
         Principled result{.base_color = color(0.2, 0.8)};
         result.roughness = float(number(0.45, 0.9));
@@ -166,8 +170,8 @@ private:
     Random& random_;
 };
 
-/// A floor and a few objects of such materials, one of them in two instances, under a sky and a lamp with a texture,
-/// all so large that a path tracer finds them. 16 x 16 pixels.
+/// A floor and a few objects of such materials, one of them in two instances, one under a coat, below a sky and a lamp
+/// with a texture, all so large that a path tracer finds them. 16 x 16 pixels.
 inline LibraryDescription random_surfaces(std::uint32_t seed) {
     Random random(seed);
     LibraryDescription scene;
@@ -208,6 +212,9 @@ inline LibraryDescription random_surfaces(std::uint32_t seed) {
         {distance * std::cos(angle), number(-0.2, 1.5), distance * std::sin(angle)}, {0, -0.2, 0}, {0, 1, 0});
     scene.camera.fov = number(35, 70);
     scene.film.width = scene.film.height = 16;
+
+    const std::size_t under_coat = materials.coated();
+    scene.add(Sphere{{number(-1, 1), number(-0.5, 0.5), number(-1, 1)}, number(0.3, 0.6)}, under_coat);
     return scene;
 }
 
