@@ -171,23 +171,30 @@ TEST_CASE("coat: reciprocity; what radiance sees one way, importance sees the ot
 TEST_CASE("coat: of a specular path the probability the other way round is known") {
     const detail::CoatOptics optics(tinted);
     const auto model = under(optics, Dielectric{.eta = 1.4f});
+    // How probable it is that light from there gets through, good to 1 %.
+    const auto probability = [&](const Vec3& from) {
+        constexpr int side = 200;
+        int through = 0;
+        for (int i = 0; i < side * side; ++i) {
+            const Vec3 u((float(i % side) + 0.5f) / side, 0.5f, (float(i / side) + 0.5f) / side);
+            const auto sample = model.sample(from, u, Transport::radiance);
+            through += sample && sample->wi.z * from.z < 0;
+        }
+        return double(through) / (side * side);
+    };
     test::Random random(11);
-    int refracted = 0;
-    for (int i = 0; i < 1000; ++i) {
+    int refracted = 0, uneven = 0;
+    for (int i = 0; i < 200; ++i) {
         const Vec3 wo = uniform_sphere(random.next_2d());
         const auto there = model.sample(wo, random.next_3d(), Transport::radiance);
         if (!there || there->wi.z * wo.z > 0) continue;
         ++refracted;
-        // The other way, all that gets through does so with one weight: weight times probability is the same but for
-        // the scale of radiance.
-        const auto back = model.sample(there->wi, Vec3(0.99f, 0.5f, 0.9999f), Transport::importance);
-        REQUIRE(back);
-        if (back->wi.z * there->wi.z > 0) continue;
-        CHECK(std::sqrt(length_squared(back->wi - wo)) < 1e-4f);
-        CHECK(there->reversal * back->reversal == relative(1, 1e-4));
-        CHECK(there->eta * back->eta == relative(1, 1e-5));
+        uneven += std::abs(there->reversal - 1) > 0.1f;
+        const double expected = probability(there->wi) / probability(wo);
+        CHECK(there->reversal == relative(expected, 0.05));
     }
-    CHECK(refracted > 300);
+    CHECK(refracted > 60);
+    CHECK(uneven > 5);
 }
 
 TEST_CASE("coat: with index 1 there is none, and what it absorbs is all that it does") {

@@ -121,7 +121,7 @@ private:
     }
 
     /// Chooses by `u.z` what the coat reflects, or what is below.
-    Maybe<BsdfSample> coated_sample(const Vec3& wo, const Vec3& u, Transport transport) const {
+    [[gnu::noinline]] Maybe<BsdfSample> coated_sample(const Vec3& wo, const Vec3& u, Transport transport) const {
         detail::CoatEntry from{.inside = wo};
         Vec3 below = u;
         if (coat) {
