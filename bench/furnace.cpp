@@ -9,6 +9,8 @@
 
 #include <cmath>
 #include <cstdio>
+#include <memory>
+#include <vector>
 
 namespace ls = lightswitch;
 
@@ -75,6 +77,15 @@ int main() {
     print_row("`roughplastic`, GGX", [](float a) {
         return ls::RoughPlastic{.distribution = Facets::ggx, .alpha = a, .diffuse_reflectance = Rgb(1)};
     });
+    const auto coated = [](const auto& base, float alpha) {
+        static std::vector<std::unique_ptr<const ls::detail::CoatOptics>> coats;
+        coats.push_back(std::make_unique<const ls::detail::CoatOptics>(ls::Coat{.alpha = alpha}));
+        return ls::Mapped<std::remove_cvref_t<decltype(base)>>{base, {.active = true}, coats.back().get()};
+    };
+    print_smooth("`coating` of `diffuse`", coated(ls::Lambert{Rgb(1)}, 0));
+    print_smooth("`coating` of `conductor`", coated(ls::Conductor{}, 0));
+    print_smooth("`coating` of `dielectric`", coated(ls::Dielectric{}, 0));
+    print_row("`roughcoating`, Beckmann, of `diffuse`", [&](float a) { return coated(ls::Lambert{Rgb(1)}, a); });
     may_gain = true;
     print_row("`roughdiffuse`", [](float a) { return ls::RoughDiffuse{.alpha = a, .reflectance = Rgb(1)}; });
     // Roughness is the square root of alpha here.
