@@ -231,7 +231,8 @@ TEST_CASE("coat: with index 1 there is none, and what it absorbs is all that it 
 
 TEST_CASE("coat: extreme directions and parameters") {
     for_each_model([&](const Coat& coat, const auto& model) {
-        // A facet that reflects all is drawn as often as the mean of facets reflects, which in thinner media may be 2 %.
+        // A facet that reflects all is drawn as often as the mean of facets reflects, which in thinner media may be 2
+        // %.
         test::check_extremes(model, coat.eta < 1 && !coat.smooth() ? 50 : 4, 60000);
     });
     constexpr int least = 3000;  // samples: the coat may keep much inside
