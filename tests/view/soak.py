@@ -49,6 +49,8 @@ def main():
                 for _ in range(dice.randint(0, 6)):
                     display.do("mousemove_relative", "--", dice.randint(-60, 60), dice.randint(-60, 60))
                 display.do("mouseup", button)
+            elif what < 0.91:
+                display.do("keydown", "ctrl", "click", "--repeat", 100, "--delay", 1, dice.choice([4, 5]), "keyup", "ctrl")
             elif what < 0.94:
                 display.do("windowsize", window, dice.randint(40, 1280), dice.randint(40, 800))
             elif what < 0.97:

@@ -67,11 +67,16 @@ void CameraControl::pan(double right, double down) {
 
 void CameraControl::dolly(double factor) {
     if (!(factor > 0)) return;
+    // Far beyond these there is nothing to see, and numbers end.
+    constexpr double most = 1e6;
+    const auto scaled = [&](double length, double at_first) {
+        return std::clamp(length * factor, at_first / most, at_first * most);
+    };
     if (camera_.projection == CameraDescription::Projection::orthographic) {
-        camera_.half_width *= factor;
+        camera_.half_width = scaled(camera_.half_width, start_.half_width);
     } else {
         const DVec3 center = pivot();
-        distance_ *= factor;
+        distance_ = scaled(distance_, start_distance_);
         camera_.to_world[3] = glm::dvec4(center - distance_ * column(camera_, 2), 1);
     }
     ++changes_;

@@ -94,7 +94,13 @@ void Interface::frame() {
             tell(error.what());
         }
     }
-    if (live_) live_->update();
+    if (live_) {
+        try {
+            live_->update();
+        } catch (const Error& error) {
+            tell(error.what());
+        }
+    }
     if (live_ && !exposure_is_chosen_) {
         const auto& snapshot = live_->shown_method().snapshot;
         if (snapshot && !snapshot->image.empty()) auto_expose();

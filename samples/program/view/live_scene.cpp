@@ -52,6 +52,7 @@ LiveScene::LiveScene(LoadedScene loaded, const ViewOptions& options, std::functi
       film_(film_of(loaded.scene)),
       settings_{.seed = options.seed, .threads = options.threads, .sampling = options.sampling},
       wake_(std::move(wake)),
+      seen_by_(camera),
       live_(std::move(loaded.scene), summary_.camera, settings_, wake_) {
     std::vector<AnyMethod> all;
     for_each_method([&](const auto& m) { all.emplace_back(m); });
@@ -184,12 +185,16 @@ std::optional<VerdictSoFar> LiveScene::verdict() const {
     return {};
 }
 
-bool LiveScene::update() {
-    bool changed = false;
-    if (camera.changes() != camera_changes_) {
-        camera_changes_ = camera.changes();
+void LiveScene::update() {
+    if (camera.changes() != seen_by_.changes()) {
+        try {
+            live_.move(camera.description(), film_);
+        } catch (const Error&) {
+            camera = seen_by_;
+            throw;
+        }
+        seen_by_ = camera;
         ++view_;
-        live_.move(camera.description(), film_);
         for (LiveMethod& method : methods_) {
             method.curve.clear();
             method.kept.clear();
@@ -199,17 +204,13 @@ bool LiveScene::update() {
         verdict_.stop();
         followed_.stop();
         moved_ = Clock::now();
-        changed = true;
     }
     // A verdict on a view is begun when the camera has come to rest.
     if (verdict_view_ != view_ && Clock::now() - moved_ > std::chrono::milliseconds(700)) verify_anew();
     for (std::size_t i = 0; i < methods_.size(); ++i) {
         auto snapshot = live_.snapshot(i);
-        if (!snapshot || snapshot == methods_[i].snapshot) continue;
-        take(methods_[i], std::move(snapshot));
-        changed = true;
+        if (snapshot && snapshot != methods_[i].snapshot) take(methods_[i], std::move(snapshot));
     }
-    return changed;
 }
 
 void LiveScene::take(LiveMethod& method, std::shared_ptr<const Snapshot> snapshot) {
@@ -269,7 +270,7 @@ std::optional<std::size_t> LiveScene::best() const {
 }
 
 std::shared_ptr<const std::vector<Layer>> LiveScene::outputs() {
-    if (outputs_view_ != view_ && camera.changes() == camera_changes_) {
+    if (outputs_view_ != view_ && camera.changes() == seen_by_.changes()) {
         outputs_view_ = view_;
         const auto scene = live_.scene();
         outputs_.start([=, settings = settings_, wake = wake_](const std::stop_token& stop, const auto& publish) {

@@ -82,8 +82,9 @@ public:
     /// To be changed at will; `update` follows it.
     CameraControl camera;
 
-    /// Fetches what is new. True when anything has changed that a window would show.
-    bool update();
+    /// Fetches what is new, and follows the camera. Throws `Error` when that has gone where it cannot see the scene from;
+    /// it is then where it was before.
+    void update();
 
     /// The verdict about the shown method by the reference; nothing when it is not asked for.
     std::optional<VerdictSoFar> verdict() const;
@@ -124,7 +125,8 @@ private:
     std::size_t shown_ = 0;
     std::optional<std::size_t> reference_;
     bool in_background_ = true, held_ = false, verifies_ = false;
-    std::uint64_t camera_changes_ = 0, view_ = 0;
+    CameraControl seen_by_;  // the camera that was followed last
+    std::uint64_t view_ = 0;
     std::uint64_t measured_with_ = 0;  // samples of the reference
     Background<VerdictSoFar> verdict_;
     std::uint64_t verdict_view_ = 0;
