@@ -25,11 +25,11 @@ double memory_in_use() {
     return file ? resident * double(sysconf(_SC_PAGESIZE)) : 0;
 }
 
-std::string bytes_text(double bytes) {
-    return bytes < 1e9 ? fmt::format("{:.0f} MB", bytes / 1e6) : fmt::format("{:.2f} GB", bytes / 1e9);
-}
-
 }  // namespace
+
+std::string bytes_text(double bytes) {
+    return bytes < 1e9 ? fmt::format("{:.3g} MB", bytes / 1e6) : fmt::format("{:.2f} GB", bytes / 1e9);
+}
 
 std::string_view name(View view) { return view_names[static_cast<std::size_t>(view)]; }
 

@@ -30,6 +30,9 @@ enum class View {
 };
 std::string_view name(View view);
 
+/// Such as "12.3 MB".
+std::string bytes_text(double bytes);
+
 /// Draws a window's contents once per `frame`. Uses `live` while a scene is there.
 class Interface {
 public:

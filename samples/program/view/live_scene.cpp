@@ -85,7 +85,10 @@ LiveScene::LiveScene(LoadedScene loaded, const ViewOptions& options, std::functi
     verify_anew();
 }
 
-std::string LiveScene::scene_type() const { return std::string(scene_type_name(*live_.scene())); }
+std::string LiveScene::scene_type() const {
+    const std::string_view type = scene_type_name(*live_.scene());
+    return std::string(type.substr(0, type.find(':')));
+}
 
 double LiveScene::scene_bytes() const {
     return std::visit(

@@ -62,6 +62,7 @@ public:
 
     const SceneSummary& summary() const { return summary_; }
     const FilmDescription& film() const { return film_; }
+    /// Which of the scene types it has, and the bytes that it takes.
     std::string scene_type() const;
     double scene_bytes() const;
     const std::vector<LiveMethod>& methods() const { return methods_; }
@@ -107,9 +108,6 @@ public:
     void saved(std::size_t method) { methods_[method].unsaved = false; }
     /// Names of methods with work that would be lost.
     std::vector<std::string> unsaved() const;
-
-    std::shared_ptr<const AnyScene> scene() const { return live_.scene(); }
-    const Settings& settings() const { return settings_; }
 
 private:
     void choose();

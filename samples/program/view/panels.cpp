@@ -46,7 +46,8 @@ const ImVec4 red{1, 0.45f, 0.4f, 1}, green{0.45f, 0.9f, 0.5f, 1}, yellow{1, 0.85
 
 void Interface::side_panel(float width, float) {
     if (!live_) return;
-    ImGui::TextWrapped("%s, %d x %d", scene_name().c_str(), live_->film().width, live_->film().height);
+    ImGui::TextWrapped("%s, %d x %d; %s scene type, %s", scene_name().c_str(), live_->film().width,
+                       live_->film().height, live_->scene_type().c_str(), bytes_text(live_->scene_bytes()).c_str());
     problems_panel();
     method_table();
     compare_panel();
