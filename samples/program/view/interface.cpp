@@ -28,7 +28,8 @@ double memory_in_use() {
 }  // namespace
 
 std::string bytes_text(double bytes) {
-    return bytes < 1e9 ? fmt::format("{:.3g} MB", bytes / 1e6) : fmt::format("{:.2f} GB", bytes / 1e9);
+    if (bytes < 1e6) return fmt::format("{:.3g} kB", bytes / 1e3);
+    return bytes < 1e9 ? fmt::format("{:.3g} MB", bytes / 1e6) : fmt::format("{:.3g} GB", bytes / 1e9);
 }
 
 std::string_view name(View view) { return view_names[static_cast<std::size_t>(view)]; }
