@@ -4,6 +4,9 @@
 
 #include <doctest/doctest.h>
 
+#include <limits>
+#include <type_traits>
+
 using namespace lightswitch;
 using test::relative;
 
@@ -27,6 +30,21 @@ TEST_CASE("pdf: arithmetic within a measure") {
     CHECK(SolidAnglePdf{1} < SolidAnglePdf{2});
     CHECK(AreaPdf{2} == AreaPdf{2});
     CHECK(SolidAnglePdf{}.value == 0);
+    CHECK(is_positive(EmissionPdf{1e-30f}));
+    CHECK_FALSE(is_positive(SolidAnglePdf{}));
+    CHECK_FALSE(is_positive(AreaPdf{std::numeric_limits<float>::quiet_NaN()}));
+    CHECK(SolidAnglePdf{1e30f} / SolidAnglePdf{1e-30f} == relative(1e60, 1e-6));  // beyond float
+    CHECK(3.0f / AreaPdf{2} == 1.5f);
+    static_assert(std::is_same_v<decltype(1.0 / SolidAnglePdf{2}), double>);
+    CHECK(Rgb(3, 2, 1) / EmissionPdf{2} == Rgb(1.5f, 1, 0.5f));
+}
+
+TEST_CASE("pdf: what a density counts by the heuristic") {
+    CHECK(heuristic(3.0) == 9);
+    CHECK(heuristic(SolidAnglePdf{1e-30f}) == relative(1e-60, 1e-6));
+    CHECK(heuristic(AreaPdf{0.5f}) == 0.25);
+    CHECK(heuristic_per_area({2}, 4, 0.5) == 0.0625);
+    CHECK(heuristic_per_area({2}, 4, 0) == 0);
 }
 
 TEST_CASE("pdf: the power heuristic and its limits") {

@@ -7,6 +7,7 @@ expect_compile_failure(pdf_weight pdf_mixing.cpp 3 "${no_conversion}")
 expect_compile_failure(pdf_assignment pdf_mixing.cpp 4 "operator=|${no_conversion}")
 expect_compile_failure(pdf_conversion pdf_mixing.cpp 5 "${no_conversion}")
 expect_compile_failure(pdf_sum pdf_mixing.cpp 6 "operator\\+|binary expression")
+expect_compile_failure(pdf_ratio pdf_mixing.cpp 7 "operator/|binary expression")
 
 set(method_needs "a rendering method needs")
 expect_compile_failure(own_method_kind own_types.cpp 1 "${method_needs}")

@@ -29,6 +29,8 @@ auto sum(SolidAnglePdf pdf, Other other) { return pdf + other; }
 #else
 auto sum(SolidAnglePdf pdf, Other other) { return SolidAnglePdf{pdf.value + other.value}; }
 #endif
+#elif CASE == 7
+double ratio(SolidAnglePdf pdf, Other other) { return pdf / other; }
 #else
-#error "CASE must be 1 to 6"
+#error "CASE must be 1 to 7"
 #endif

@@ -44,6 +44,14 @@ floors() {
     }' | sort -u | nothing 'includes that climb, or go sideways (core at the bottom; see the floors in docs/design.md):'
 }
 
+# Methods compute with densities as types: none takes the number out of one. Densities are known by `pdf` at the end of a name, and by being
+# declared as one.
+densities() {
+  local names
+  names=$(grep -rhoE '(SolidAngle|Area|Emission)Pdf&? +\w+' method | awk '{ printf "%s%s", (NR > 1 ? "|" : ""), $NF }')
+  grep -rnE "(pdf_?|\\<($names))(\(.*\))?[.]value\>" method | nothing 'methods that unwrap a density (see core/pdf.hpp):'
+}
+
 [ "$(find . -name "*.[ch]pp" | wc -l)" -gt 0 ] || { echo "no C++ files in $PWD"; exit 2; }
 
 case $rule in
@@ -59,6 +67,7 @@ case $rule in
   length) find . -name '*.hpp' ! -path ./report/page.hpp -exec awk 'END { if (FNR > 320) print FILENAME ": " FNR " lines" }' {} \; |
     nothing 'headers longer than 320 lines:' ;;
   floors) floors ;;
+  densities) densities ;;
   width) find . \( -name '*.[ch]pp' -o -name '*.js' -o -name '*.css' -o -name '*.html' \) ! -path ./report/page.hpp -exec awk 'length > 120 { print FILENAME ":" FNR }' {} + |
     nothing 'lines longer than 120 columns:' ;;
   no_inl) find . -type f ! -name '*.hpp' ! -path './report/page/*' | nothing 'only .hpp files belong in include/:' ;;

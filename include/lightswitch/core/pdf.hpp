@@ -4,6 +4,8 @@
 
 #include <lightswitch/core/math.hpp>
 
+#include <concepts>
+
 namespace lightswitch {
 
 /// Density with respect to solid angle, in 1/sr. Arithmetic between densities of the same measure is allowed;
@@ -43,7 +45,43 @@ inline AreaPdf to_area(SolidAnglePdf p, float distance_squared, float abs_cosine
     return {p.value * abs_cosine / distance_squared};
 }
 
+/// Any of them.
+template <class P>
+concept Density = std::same_as<P, SolidAnglePdf> || std::same_as<P, AreaPdf> || std::same_as<P, EmissionPdf>;
+
+/// Whether what has that density can be chosen at all; false for NaN.
+template <Density P>
+[[gnu::always_inline]] inline bool is_positive(P p) {
+    return p.value > 0;
+}
+
+/// A ratio of densities of one measure, which has no unit.
+template <Density P>
+[[gnu::always_inline]] inline double operator/(const P& a, const P& b) {
+    return double(a.value) / double(b.value);
+}
+
+/// What has been chosen with that density, such as radiance or a cosine, as it counts in an estimate.
+template <class T, Density P>
+requires(std::floating_point<T> || std::same_as<T, Rgb>) [[gnu::always_inline]] inline T operator/(const T& term, P p) {
+    return term / p.value;
+}
+
 inline EmissionPdf operator*(AreaPdf place, SolidAnglePdf direction) { return {place.value * direction.value}; }
+
+/// What a ratio of two densities counts in a weight of multiple importance sampling (power heuristic with exponent 2).
+inline double heuristic(double ratio) { return ratio * ratio; }
+
+/// What a density counts as the numerator of such a ratio.
+template <Density P>
+[[gnu::always_inline]] inline double heuristic(P p) {
+    return heuristic(double(p.value));
+}
+
+/// What the density counts once it is changed by `to_area`, all in double.
+[[gnu::always_inline]] inline double heuristic_per_area(SolidAnglePdf p, double distance_squared, double abs_cosine) {
+    return heuristic(double(p.value) * abs_cosine / distance_squared);
+}
 
 /// Multiple importance sampling weight of the strategy that has density `ours`, against one other strategy
 /// (power heuristic with exponent 2; Veach 1997, section 9.2.3). Both 0 gives 0; an infinite `ours` gives 1.

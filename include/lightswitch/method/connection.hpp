@@ -32,8 +32,8 @@ inline Contribution meet_light(const auto& scene, const auto& path) {
     if (z.edges > 1) {
         const float distance2 = square(z.point.distance), cosine = std::abs(dot(z.point.wo, z.point.normal));
         const AreaPdf direct = to_area(scene.light_pdf(path.previous(), -z.point.wo, z.point), distance2, cosine);
-        more = heuristic(direct.value) * z.weights.last +
-               heuristic(scene.emission_pdf(z.point, z.point.wo).value) * z.weights.connections;
+        more = heuristic(direct) * z.weights.last +
+               heuristic(scene.emission_pdf(z.point, z.point.wo)) * z.weights.connections;
     }
     return {z.throughput * radiance, strategy_weight(0, more)};
 }
@@ -47,8 +47,8 @@ inline Contribution meet_environment(const auto& scene, const auto& path) {
     if (path.vertex().edges > 1) {
         // Places beyond the scene are directions: the weights have not been turned to area.
         const PartialWeights& w = path.vertex().weights;
-        more = heuristic(scene.environment_pdf(path.previous_normal(), direction).value) * w.last +
-               heuristic(scene.environment_emission_pdf(direction).value) * w.connections;
+        more = heuristic(scene.environment_pdf(path.previous_normal(), direction)) * w.last +
+               heuristic(scene.environment_emission_pdf(direction)) * w.connections;
     }
     return {path.carried() * radiance, strategy_weight(0, more)};
 }
@@ -59,15 +59,15 @@ inline Contribution meet_environment(const auto& scene, const auto& path) {
                                                           const MergeWeights& merge_weights,
                                                           const PathClasses& left_out = {}) {
     const LightSample light = scene.sample_light(z.point, choice, place);
-    if (!(light.pdf.value > 0) || (light.dirac && left_out.dirac_light)) return {};
+    if (!is_positive(light.pdf) || (light.dirac && left_out.dirac_light)) return {};
     const Turn at_camera = turn<Transport::radiance>(scene, z.point, at_z, light.wi);
     if (is_black(at_camera.value)) return {};
     const double cosine = std::abs(dot(z.point.normal, light.wi));
-    const double fewer = light.dirac ? 0 : heuristic(double(at_camera.pdf.value) / double(light.pdf.value));
+    const double fewer = light.dirac ? 0 : heuristic(at_camera.pdf / light.pdf);
     const double more =
         heuristic(cosine / double(light.spread)) *
-        (merge_weights.merge + z.weights.last + z.weights.connections * heuristic(at_camera.reverse_pdf.value));
-    return {{z.throughput * at_camera.value * (light.radiance / light.pdf.value), strategy_weight(fewer, more)},
+        (merge_weights.merge + z.weights.last + z.weights.connections * heuristic(at_camera.reverse_pdf));
+    return {{z.throughput * at_camera.value * (light.radiance / light.pdf), strategy_weight(fewer, more)},
             light.visibility};
 }
 
@@ -79,7 +79,7 @@ inline Contribution meet_environment(const auto& scene, const auto& path) {
     const double cosine = std::abs(dot(y.point.normal, view.wi));
     const double fewer =
         heuristic(view.density * cosine / light_paths) *
-        (merge_weights.merge + y.weights.last + y.weights.connections * heuristic(at_light.reverse_pdf.value));
+        (merge_weights.merge + y.weights.last + y.weights.connections * heuristic(at_light.reverse_pdf));
     return {{y.throughput * at_light.value * static_cast<float>(view.density / light_paths), strategy_weight(fewer, 0)},
             view.visibility};
 }
@@ -97,11 +97,11 @@ inline Contribution meet_environment(const auto& scene, const auto& path) {
     if (is_black(at_light.value)) return {};
     const double cosine_z = std::abs(dot(z.point.normal, wi)), cosine_y = std::abs(dot(y.point.normal, wi));
     const double fewer =
-        heuristic(at_camera.pdf.value * cosine_y / distance2) *
-        (merge_weights.merge + y.weights.last + y.weights.connections * heuristic(at_light.reverse_pdf.value));
+        heuristic_per_area(at_camera.pdf, distance2, cosine_y) *
+        (merge_weights.merge + y.weights.last + y.weights.connections * heuristic(at_light.reverse_pdf));
     const double more =
-        heuristic(at_light.pdf.value * cosine_z / distance2) *
-        (merge_weights.merge + z.weights.last + z.weights.connections * heuristic(at_camera.reverse_pdf.value));
+        heuristic_per_area(at_light.pdf, distance2, cosine_z) *
+        (merge_weights.merge + z.weights.last + z.weights.connections * heuristic(at_camera.reverse_pdf));
     return {{z.throughput * at_camera.value * at_light.value * y.throughput * static_cast<float>(1 / distance2),
              strategy_weight(fewer, more)},
             z.point.segment_to(y.point.position, y.point.normal, y.point.offset)};

@@ -89,8 +89,8 @@ inline MergeWeights merge_weights(double light_paths, double radius) {
                                                  const Arrival& at_z, const MergeWeights& weights) {
     const Turn at = photon_turn(scene, z.point, at_z, y);
     if (is_black(at.value)) return {};
-    const double fewer = y.last * weights.connect + y.merges * heuristic(at.pdf.value);
-    const double more = z.weights.last * weights.connect + z.weights.merges * heuristic(at.reverse_pdf.value);
+    const double fewer = y.last * weights.connect + y.merges * heuristic(at.pdf);
+    const double more = z.weights.last * weights.connect + z.weights.merges * heuristic(at.reverse_pdf);
     return {z.throughput * at.value * y.power * static_cast<float>(1 / weights.merges), strategy_weight(fewer, more)};
 }
 

@@ -61,10 +61,10 @@ struct PathTracerNee {
                     return bsdf.sample(local_wo, Vec3(direction, choices.x), Transport::radiance);
                 });
             // Traced after both directions are known: the processor works on the next ray meanwhile.
-            if (light.pdf.value > 0 && !is_black(scattering.value) && !scene.occluded(light.visibility)) {
+            if (is_positive(light.pdf) && !is_black(scattering.value) && !scene.occluded(light.visibility)) {
                 const float weight = light.dirac ? 1 : power_heuristic(light.pdf, scattering.pdf);
                 const Rgb found =
-                    throughput * scattering.value * light.radiance * (std::abs(local_wi.z) / light.pdf.value * weight);
+                    throughput * scattering.value * light.radiance * (std::abs(local_wi.z) / light.pdf * weight);
                 tell(scene, Contributed{Finding::light_sampled, 1, depth + 1, weight, found});
                 sum += found;
             }

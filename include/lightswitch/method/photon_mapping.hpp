@@ -136,11 +136,11 @@ private:
     /// With its weight.
     Rgb direct_light(const auto& scene, const auto& at, float choice, const Vec2& place, float& weight) const {
         const LightSample light = scene.sample_light(at, choice, place);
-        if (!(light.pdf.value > 0)) return Rgb(0);
+        if (!is_positive(light.pdf)) return Rgb(0);
         const Turn towards = turn<Transport::radiance>(scene, at, Arrival(at), light.wi);
         if (is_black(towards.value) || scene.occluded(light.visibility)) return Rgb(0);
         weight = light.dirac ? 1 : power_heuristic(light.pdf, towards.pdf);
-        return towards.value * light.radiance * (weight / light.pdf.value);
+        return towards.value * light.radiance * (weight / light.pdf);
     }
 };
 

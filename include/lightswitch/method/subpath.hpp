@@ -20,9 +20,6 @@ struct PathLimits : PathLength {
     PathClasses left_out = {};
 };
 
-/// What a ratio of two densities counts in a weight.
-inline double heuristic(double ratio) { return ratio * ratio; }
-
 /// How merging (of camera path vertices with the light path vertices around them) is weighed against connecting. Both 0
 /// for a method that only connects. With n light paths per iteration and radius r, merging has n pi r^2 times the
 /// density of a connection.
@@ -139,7 +136,7 @@ public:
                 heuristic(light_paths_ / connectable_camera(scene.camera()).density(hit->position, ray_.direction));
         } else {
             w.last = heuristic(scene.spread(emission_.light, *hit, hit->wo, ray_.origin));
-            if (!emission_.dirac) w.connections = heuristic(emission_.cosine / emission_.pdf.value);
+            if (!emission_.dirac) w.connections = heuristic(emission_.cosine / emission_.pdf);
             w.merges = w.connections * merge_weights_.connect;
         }
         const double per_area = 1 / heuristic(cosine);
@@ -182,8 +179,8 @@ public:
             const double back = heuristic(cosine * double(scattered->reversal));
             w = {.last = 0, .connections = w.connections * back, .merges = w.merges * back};
         } else {
-            const double pdf = scattered->pdf.value, forward = heuristic(cosine / pdf), back = heuristic(reverse.value);
-            w = {.last = heuristic(1 / pdf),
+            const double forward = heuristic(cosine / scattered->pdf), back = heuristic(reverse);
+            w = {.last = heuristic(1.0 / scattered->pdf),
                  .connections = forward * (w.connections * back + w.last + merge_weights_.merge),
                  .merges = forward * (w.merges * back + w.last * merge_weights_.connect + 1)};
         }
