@@ -285,3 +285,25 @@ TEST_CASE("it can be stopped, and says what it knows") {
     stop.request_stop();
     CHECK(verify(scene, PathTracerNee{}, PathTracer{}, options).answer == Verdict::Answer::undecided);
 }
+
+TEST_CASE("after every look it tells what the verdict would be, which leaves the last one as it is") {
+    const auto scene = small_furnace();
+    VerifyOptions options = limited(200, 2);
+    const Verdict alone = verify(scene, PathTracerNee{}, PathTracer{}, options);
+    std::vector<Verdict> looks;
+    options.looked = [&](const Verdict& verdict) { looks.push_back(verdict); };
+    const Verdict verdict = verify(scene, PathTracerNee{}, PathTracer{}, options);
+    REQUIRE(looks.size() >= 2);
+    for (std::size_t i = 1; i < looks.size(); ++i) {
+        CHECK(looks[i].images > looks[i - 1].images);
+        CHECK(looks[i].method == "path-nee");
+        CHECK(!looks[i].reason.empty());
+    }
+    CHECK(looks.back().answer == verdict.answer);
+    CHECK(looks.back().reason == verdict.reason);
+    CHECK(looks.back().images == verdict.images);
+    CHECK(verdict.answer == alone.answer);
+    CHECK(verdict.images == alone.images);
+    CHECK(verdict.parts.front().bias == alone.parts.front().bias);
+    CHECK(verdict.curve.size() == alone.curve.size());
+}
