@@ -20,6 +20,9 @@ Difference difference_shown(View view) {
                                         : Difference::absolute;
 }
 
+/// In one version of ImGui a pointer, in another a number.
+ImTextureID drawn(const Texture& texture, bool enlarged) { return (ImTextureID)texture.handle(enlarged); }
+
 constexpr float smallest_labelled = 64;  // pixels of the screen in which a pixel's three numbers find room
 
 }  // namespace
@@ -186,7 +189,7 @@ void Interface::draw_texture(const Texture& texture, const Place& place) {
     const auto u = [&](float x) { return (x - place.left) / (columns * place.size); };
     const auto v = [&](float y) { return (y - place.top) / (rows * place.size); };
     const bool coarse = texture.width() != live_->film().width;
-    list.AddImage(texture.handle(!coarse && place.size >= 1), {left, top}, {right, bottom}, {u(left), v(top)},
+    list.AddImage(drawn(texture, !coarse && place.size >= 1), {left, top}, {right, bottom}, {u(left), v(top)},
                   {u(right), v(bottom)});
     if (picked_) {
         const float x = place.left + static_cast<float>(picked_->first) * place.size;
@@ -253,7 +256,7 @@ void Interface::draw_legend(const Place& place) {
     const float x = std::round(place.x + (place.width - static_cast<float>(legend_.width())) / 2);
     const float y = std::round(place.y + place.height - static_cast<float>(legend_.height()) - 8);
     ImGui::GetWindowDrawList()->AddImage(
-        legend_.handle(true), {x, y},
+        drawn(legend_, true), {x, y},
         {x + static_cast<float>(legend_.width()), y + static_cast<float>(legend_.height())});
 }
 

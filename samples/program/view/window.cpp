@@ -7,6 +7,7 @@
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -171,12 +172,12 @@ void Texture::set(const Picture& picture) {
     }
 }
 
-void* Texture::handle(bool enlarged) const {
+std::intptr_t Texture::handle(bool enlarged) const {
     glBindTexture(GL_TEXTURE_2D, id_);
     const GLint filter = enlarged ? GL_NEAREST : GL_LINEAR;
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, filter);
-    return reinterpret_cast<void*>(static_cast<std::intptr_t>(id_));
+    return static_cast<std::intptr_t>(id_);
 }
 
 }  // namespace lightswitch::program

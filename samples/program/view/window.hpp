@@ -5,6 +5,7 @@
 #include "../program.hpp"
 #include "pictures.hpp"
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -72,8 +73,8 @@ public:
     bool empty() const { return id_ == 0; }
     int width() const { return width_; }
     int height() const { return height_; }
-    /// For ImGui. Enlarged pixels have edges, reduced ones are smoothed.
-    void* handle(bool enlarged) const;
+    /// OpenGL's number. Enlarged pixels have edges, reduced ones are smoothed.
+    std::intptr_t handle(bool enlarged) const;
 
 private:
     unsigned id_ = 0;
