@@ -123,8 +123,8 @@ void Interface::draw_views(const Place& whole) {
     const auto title = [](const LiveMethod& method) {
         const auto& s = method.snapshot;
         if (s && !s->failure.empty()) return fmt::format("{}: {}", method.name, s->failure);
-        return s && s->iterations > 0 ? fmt::format("{}, {} samples", method.name, s->iterations)
-                                      : fmt::format("{}, coarse", method.name);
+        if (s && s->iterations > 0) return fmt::format("{}, {} samples", method.name, s->iterations);
+        return fmt::format("{}, {}", method.name, s ? "coarse" : "not begun");
     };
     const auto draw_one = [&](const Texture& texture, const std::shared_ptr<const Snapshot>& drawn, const Place& place,
                               const LiveMethod& method) {

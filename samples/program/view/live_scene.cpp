@@ -108,6 +108,8 @@ void LiveScene::choose() {
 void LiveScene::show(std::size_t method) {
     if (method == shown_) return;
     shown_ = method;
+    const auto& snapshot = methods_[method].snapshot;
+    if (!snapshot || snapshot->iterations == 0) held_ = false;  // there is nothing to look at yet
     choose();
     verify_anew();
 }
@@ -198,6 +200,7 @@ void LiveScene::update() {
         }
         seen_by_ = camera;
         ++view_;
+        if (held_) hold(false);  // there is nothing to look at yet
         for (LiveMethod& method : methods_) {
             method.curve.clear();
             method.kept.clear();
