@@ -173,6 +173,48 @@ TEST_CASE("BSDFs are read with their parameters") {
     CHECK(rough.eta == Rgb(1, 2, 3));
     CHECK(rough.k == Rgb(4));
     CHECK(bsdf("<bsdf type=\"twosided\"><bsdf type=\"conductor\"/></bsdf>").get<Conductor>());
+    // Mitsuba raises a roughness of 0, in a texture, too.
+    CHECK(
+        bsdf("<bsdf type=\"roughconductor\"><float name=\"alpha\" value=\"0\"/></bsdf>").as<RoughConductor>().alpha_v ==
+        1e-4f);
+    const auto patches = bsdf(
+        "<bsdf type=\"roughdielectric\"><texture type=\"checkerboard\" name=\"alpha\"><float name=\"color0\" "
+        "value=\"0\"/><float name=\"color1\" value=\"0.3\"/></texture></bsdf>");
+    const auto alpha = [&](float u) {
+        return patches.as<Textured<RoughDielectric>>().at({Vec2(u, 0.1f), SurfacePoint{}}).alpha_u;
+    };
+    CHECK(std::min(alpha(0.1f), alpha(0.6f)) == 1e-4f);
+    CHECK(std::max(alpha(0.1f), alpha(0.6f)) == 0.3f);
+}
+
+TEST_CASE("filters of polarized light let a part of the light through, as in Mitsuba's variants without polarization") {
+    const auto opacity = [](const std::string& type, const std::string& inside) {
+        const auto result =
+            scene("<shape type=\"rectangle\"><bsdf type=\"" + type + "\">" + inside + "</bsdf></shape>");
+        const auto& mask = std::get<Mask>(*result.materials[result.shapes[0].material].layer);
+        CHECK(result.materials[mask.inner].bsdf.as<Lambert>().reflectance == Rgb(0));
+        CHECK(mask.opacity.least() == mask.opacity.most());
+        return mask.opacity.most().x;
+    };
+    const std::string part = "<spectrum name=\"transmittance\" value=\"0.5\"/>";
+    CHECK(opacity("polarizer", "<float name=\"theta\" value=\"45\"/>") == 0.5f);
+    CHECK(opacity("polarizer", part + "<boolean name=\"polarizing\" value=\"false\"/>") == 0.75f);
+    CHECK(opacity("circular", part + "<boolean name=\"left_handed\" value=\"true\"/>") == 0.75f);
+    CHECK(opacity("retarder", "<float name=\"delta\" value=\"90\"/>") == 0);
+    CHECK(opacity("retarder", part) == 0.5f);
+}
+
+TEST_CASE("a texture of type rawconstant is one number, or three as they are") {
+    const auto reflectance = [](const std::string& value) {
+        return bsdf("<bsdf type=\"diffuse\"><texture type=\"rawconstant\" name=\"reflectance\">" + value +
+                    "</texture></bsdf>")
+            .as<Textured<Lambert>>()
+            .at({Vec2(0.3f), SurfacePoint{}})
+            .reflectance;
+    };
+    CHECK(reflectance("<float name=\"value\" value=\"0.25\"/>") == Rgb(0.25f));
+    CHECK(reflectance("<vector name=\"value\" value=\"0.25 0.5 1\"/>") == Rgb(0.25f, 0.5f, 1));
+    CHECK(contains(message_of([&] { reflectance(""); }), "the parameter \"value\" is missing"));
 }
 
 TEST_CASE("references go forward, and into other objects") {
@@ -234,6 +276,11 @@ TEST_CASE("transforms are applied in the order of the file") {
                  {-0.267261, -0.534522, -0.801784, 0},
                  {1, 2, 3, 1}},
                 1e-6);
+    // Also with an axis that is no unit vector, which is no rotation then.
+    const auto stretched = scene(
+        "<shape type=\"rectangle\"><transform name=\"to_world\"><rotate y=\"2\" angle=\"90\"/></transform></shape>");
+    const auto& positions = std::get<Mesh>(stretched.shapes[0].geometry).positions;
+    CHECK(glm::length(positions[2] - DVec3(0, 4, -2)) < 1e-12);
     const auto scaled =
         scene("<shape type=\"rectangle\"><transform name=\"to_world\"><scale x=\"2\" y=\"3\"/></transform></shape>");
     CHECK(std::get<Mesh>(scaled.shapes[0].geometry).positions[2] == DVec3(2, 3, 0));
@@ -258,6 +305,18 @@ TEST_CASE("cameras are read with their parameters") {
     // Mitsuba's default is its far plane.
     CHECK(sensor(aperture, "thinlens").focus_distance == 10000);
     CHECK(sensor(aperture + "<float name=\"far_clip\" value=\"7\"/>", "thinlens").focus_distance == 7);
+
+    // Rays of Mitsuba 3.9.1 with this scale begin at z = 3 and end 99 farther on; its image is 3 wide.
+    const auto parallel = sensor(
+        "<float name=\"near_clip\" value=\"1\"/><float name=\"far_clip\" value=\"100\"/>"
+        "<transform name=\"to_world\"><scale x=\"1.5\" y=\"1.5\" z=\"-3\"/></transform>",
+        "orthographic");
+    CHECK(parallel.half_width == 1.5);
+    CHECK(parallel.near_clip == 3);
+    CHECK(parallel.far_clip == 102);
+    check_close(parallel.to_world, {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, -1, 0}, {0, 0, 0, 1}}, 0);
+    CHECK(sensor("<transform name=\"to_world\"><scale value=\"7\"/></transform>", "orthographic").far_clip ==
+          std::numeric_limits<double>::infinity());
 
     CHECK(film("<rfilter type=\"tent\"/>").filter.radius() == 1);
     CHECK(film("<rfilter type=\"tent\"><float name=\"radius\" value=\"1.5\"/></rfilter>").filter.radius() == 1.5f);
@@ -416,6 +475,31 @@ TEST_CASE("what does not change the image is accepted") {
         "name=\"gamma\" value=\"2.2\"/></film></sensor>");
     CHECK(picture.exposure == 1.5f);
     CHECK_FALSE(scene("").exposure);
+}
+
+TEST_CASE("what Mitsuba passes over is passed over with a notice") {
+    const auto notices = [](const std::string& text) {
+        const Folder folder;
+        Notices result;
+        load_mitsuba(folder.write("room.xml", text), {}, &result);
+        std::string all;
+        for (const std::string& notice : result) all += notice + '\n';
+        return all;
+    };
+    const std::string head = "<scene version=\"3.0.0\">\n<sensor type=\"perspective\"/>\n";
+    CHECK(notices(head + "</scene>") == "");
+    for (const std::string& text : {head + "words</scene>", head + "<![CDATA[words]]></scene>"})
+        CHECK(contains(notices(text), "room.xml:1: <scene>: unexpected text \"words\" is ignored\n"));
+    CHECK(contains(notices(head + "</scene>\ntrailing"), "unexpected text \"trailing\" is ignored\n"));
+    CHECK(contains(notices(head + "<sampler type=\"independent\"/><film type=\"hdrfilm\" id=\"a\"/></scene>"),
+                   "room.xml:3: <sampler type=\"independent\">: is in no sensor, and is ignored\n"));
+    CHECK(
+        contains(notices(head + "<shape type=\"cube\"><transform name=\"to_world\"><rotate y=\"2\" angle=\"9\"/>"
+                                "</transform></shape></scene>"),
+                 "room.xml:3: <rotate>: the rotation axis has length 2.000000: as in Mitsuba 3, this scales besides"));
+    CHECK(contains(notices("<scene version=\"0.6.0\"><integrator type=\"path\"><integer name=\"maxPasses\" "
+                           "value=\"3\"/></integrator></scene>"),
+                   "is upgraded"));
 }
 
 TEST_CASE("integrators of any name say how long paths are") {

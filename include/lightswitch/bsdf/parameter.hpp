@@ -16,6 +16,10 @@ struct ParameterRange {
     float least = 0, most = 1;
     bool open = false;
 
+    /// The value itself, but for the end that is left out: then one just above it, which is the least roughness that
+    /// facets have. A file that says 0 means a surface that is next to smooth.
+    float within(float value) const { return open && value == least ? least + 1e-4f : value; }
+
     bool contains(float value) const { return (open ? value > least : value >= least) && value <= most; }
 };
 

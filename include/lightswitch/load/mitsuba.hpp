@@ -43,6 +43,7 @@ public:
         for (const auto node : element.objects("shape")) shapes.read(node);
         EmitterReader emitters(file_, scene_);
         for (const auto node : element.objects("emitter")) emitters.read(node);
+        drop_parts_of_sensors(element);
         element.refuse_media();
         element.finish();
         if (sensors.empty()) place_camera(element);
@@ -72,6 +73,13 @@ private:
             return sensors[static_cast<std::size_t>(*number)];
         fail({log_.files()[0], 0, {}},
              "there is no sensor " + quote(wanted) + "; known are 0 to " + std::to_string(sensors.size() - 1) + ids);
+    }
+
+    /// Those of no sensor, to which sensors may refer.
+    void drop_parts_of_sensors(XmlElement& element) {
+        for (const char* tag : {"sampler", "film", "rfilter"})
+            for (const auto node : element.objects(tag))
+                if (!node.attribute("id")) log_.notice(file_.origin(node), "is in no sensor, and is ignored");
     }
 
     void place_camera(const XmlElement& element) {

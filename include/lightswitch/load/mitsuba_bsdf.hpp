@@ -44,11 +44,11 @@ inline float read_relative_index(XmlElement& element, const std::string& inside,
     return static_cast<float>(index / read_index_of_refraction(element, "ext_ior", outside));
 }
 
-/// The value, or the nearest one in the range. Roughness goes no lower than in Mitsuba.
+/// The value, or the nearest one in the range. Roughness goes no lower than in Mitsuba, where 0 is as good as that.
 inline float clamped(XmlElement& element, const std::string& name, const ParameterRange& range, float value) {
+    value = range.within(value);
     if (range.contains(value)) return value;
-    const float least = range.open ? std::max(range.least, 1e-4f) : range.least;
-    const float result = std::clamp(value, least, range.most);
+    const float result = range.within(std::clamp(value, range.least, range.most));
     element.problem(name, number_text(value) + outside(range), "it is " + number_text(result));
     return result;
 }
@@ -146,7 +146,7 @@ public:
         element_.unknown_type(
             "diffuse, conductor, roughconductor, dielectric, roughdielectric, thindielectric, plastic, roughplastic, "
             "principled, principledthin, roughdiffuse, phong, ward, coating, roughcoating, twosided, mask, null, "
-            "blendbsdf, bumpmap and normalmap");
+            "polarizer, retarder, circular, blendbsdf, bumpmap and normalmap");
     }
 
 private:

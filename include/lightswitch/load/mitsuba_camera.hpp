@@ -131,11 +131,14 @@ inline void read_sensor(const XmlFile& file, pugi::xml_node node, LibraryDescrip
     camera.origin = element.origin();
     if (orthographic) camera.projection = CameraDescription::Projection::orthographic;
     if (!orthographic) read_field_of_view(element, camera);
+    double depth_scale = 1;
     if (auto to_world = element.transform("to_world")) {
         if (orthographic) {
             // The image shows what is within 1 of the axis in each direction, before it is scaled.
             camera.half_width = glm::length(DVec3((*to_world)[0]));
-            for (int i = 0; i < 3; ++i) (*to_world)[i] /= camera.half_width;
+            depth_scale = glm::length(DVec3((*to_world)[2]));
+            for (int i = 0; i < 2; ++i) (*to_world)[i] /= camera.half_width;
+            (*to_world)[2] /= depth_scale;
         }
         camera.to_world = *to_world;
         // The same tolerance as in Mitsuba, for matrices written with few digits.
@@ -152,6 +155,9 @@ inline void read_sensor(const XmlFile& file, pugi::xml_node node, LibraryDescrip
     if (far_clip && !(camera.near_clip < *far_clip))
         element.problem("", "near_clip must be smaller than far_clip", "far_clip is infinite");
     else camera.far_clip = far_clip.value_or(camera.far_clip);
+    // As Mitsuba does it, a scale moves the nearer plane, but leaves both as far apart as they were.
+    camera.far_clip += (depth_scale - 1) * camera.near_clip;
+    camera.near_clip *= depth_scale;
 
     // Mitsuba's default is its far plane.
     const double focus = element.positive("focus_distance", std::isfinite(camera.far_clip) ? camera.far_clip : 10000);
@@ -206,7 +212,8 @@ inline void read_integrator(const XmlFile& file, pugi::xml_node node, LibraryDes
             node = inner[0];
         }
         element.accept({"strict_normals", "samples_per_pass", "block_size", "timeout"});
-        if (type != "path") element.accept_rest();
+        // Mitsuba 0.x warns of what an integrator does not know, and goes on.
+        if (type != "path" || element.is_old()) element.accept_rest();
         element.finish();
     }
 }

@@ -111,6 +111,7 @@ private:
             return add(Mask{by_default(true, origin), Texture(Rgb(0))}, origin);
         }
         if (type == "coating" || type == "roughcoating") return read_coating(element);
+        if (type == "polarizer" || type == "retarder" || type == "circular") return read_filter(element);
         if (type == "bumpmap") {
             BumpMap map{.inner = 0, .height = Texture(Rgb(0))};
             map.scale = static_cast<float>(element.number("scale", 1));
@@ -120,6 +121,21 @@ private:
         if (type == "normalmap")
             return finish_map(element, NormalMap{.inner = 0, .normals = textures_.texture(element, "normalmap")});
         return scene_.add(BsdfReader(element, textures_).read(), origin);
+    }
+
+    /// A filter for polarized light, without which it lets a part of the light through and absorbs the rest: half,
+    /// but for a retarder.
+    std::size_t read_filter(XmlElement& element) {
+        const Texture transmittance = textures_.value_or_texture(element, "transmittance", 1);
+        const Rgb least = transmittance.least(), most = transmittance.most();
+        if (least != most || most != Rgb(most.x))
+            element.problem("transmittance", "only grey of one value is supported here", "its mean counts");
+        // What a polarizer's turn, and a retarder's phase, mean without polarization: nothing.
+        for (const char* name : {"theta", "delta"}) textures_.value_or_texture(element, name, 0);
+        for (const char* name : {"polarizing", "left_handed"}) element.boolean(name, true);
+        element.finish();
+        const float through = luminance(transmittance.mean()) * (element.type() == "retarder" ? 1.0f : 0.5f);
+        return add(Mask{by_default(true, element.origin()), Texture(Rgb(1 - through))}, element.origin());
     }
 
     /// Several bsdfs of Mitsuba 0.6, each with its share of the light: blends of two.

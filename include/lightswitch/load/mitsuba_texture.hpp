@@ -97,9 +97,11 @@ private:
         const auto known = textures_.find(node);
         if (known != textures_.end()) return known->second;
         XmlElement element(file_, node);
-        const Texture texture = element.type() == "bitmap"  ? read_bitmap(element)
-                                : element.type() == "scale" ? read_scaled(element)
-                                                            : read_checkerboard(element);
+        const std::string type = element.type();
+        const Texture texture = type == "bitmap"        ? read_bitmap(element)
+                                : type == "scale"       ? read_scaled(element)
+                                : type == "rawconstant" ? read_constant(element)
+                                                        : read_checkerboard(element);
         element.finish();
         if (const std::string problem = texture.problem(); !problem.empty()) element.error(problem);
         return textures_.emplace(node, texture).first->second;
@@ -135,8 +137,15 @@ private:
         return Texture(bitmap, read_to_uv(element));
     }
 
+    static Texture read_constant(XmlElement& element) {
+        const std::string name = "value";
+        if (!element.has(name)) element.error("the parameter \"value\" is missing");
+        if (!element.is_vector(name)) return Texture(Rgb(static_cast<float>(element.number(name, 0.5))));
+        return Texture(Rgb(element.vector(name).value_or(DVec3(0.5))));
+    }
+
     static Texture read_checkerboard(XmlElement& element) {
-        if (element.type() != "checkerboard") element.unknown_type("bitmap and checkerboard");
+        if (element.type() != "checkerboard") element.unknown_type("bitmap, checkerboard and rawconstant");
         const Checkerboard pattern{element.color("color0", 0.4f), element.color("color1", 0.2f)};
         return Texture(pattern, read_to_uv(element));
     }

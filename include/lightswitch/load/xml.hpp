@@ -23,8 +23,8 @@ namespace lightswitch::detail {
 /// those of 3.
 ///
 /// Throws `Error` with the line for malformed or hostile XML: a document type (and with it all entities), more than 64
-/// levels, over 16 MiB of text or of replaced values. Goes on, with a problem in the log, after text between elements,
-/// undefined or unused `$name`, ids given twice, and files that cannot be included.
+/// levels, over 16 MiB of text or of replaced values. Goes on, with a problem in the log, after undefined or unused
+/// `$name`, ids given twice, and files that cannot be included; with a notice after text between elements.
 class XmlFile {
 public:
     using Defines = std::map<std::string, std::string>;
@@ -231,7 +231,7 @@ inline void XmlFile::prepare(pugi::xml_node node, int depth) {
         std::string_view text = node.value();
         const auto parent = node.parent();
         const Origin where = parent.type() == pugi::node_document ? Origin{part(node).file, 0, {}} : origin(parent);
-        return log_.problem(where, "unexpected text " + quote(next_word(text)), "it is ignored");
+        return log_.notice(where, "unexpected text " + quote(next_word(text)) + " is ignored");
     }
     if (node.type() != pugi::node_element) return;
     if (depth > max_depth) fail(origin(node), "elements are nested more than " + std::to_string(max_depth) + " deep");

@@ -36,6 +36,9 @@ public:
     bool has_string(const std::string& name) const {
         return has(name) && std::string_view(parameters_.at(name).name()) == "string";
     }
+    bool is_vector(const std::string& name) const {
+        return has(name) && std::string_view(parameters_.at(name).name()) == "vector";
+    }
     /// Place of a parameter that is there.
     Origin origin(const std::string& name) const { return file_.origin(parameters_.at(name)); }
     /// Takes down what is wrong with that parameter, if it is there, or else with the element.

@@ -49,7 +49,7 @@ inline DVec3 read_vector(const XmlFile& file, pugi::xml_node node, std::optional
     return result;
 }
 
-/// Turns by `degrees` about the unit vector `axis`.
+/// Turns by `degrees` about the unit vector `axis`. With an axis of another length it is no rotation.
 inline DMat4 rotation(const DVec3& axis, double degrees) {
     const double angle = degrees * std::numbers::pi / 180, c = std::cos(angle), s = std::sin(angle);
     DMat4 result(1);
@@ -84,12 +84,17 @@ inline DMat4 read_transform_step(const XmlFile& file, pugi::xml_node node) {
         file.check_attributes(node, {"angle"}, {"value", "x", "y", "z"});
         const DVec3 axis = read_vector(file, node, 0);
         const double length = glm::length(axis);
-        // Mitsuba 0.6 takes it for a direction; 3 would use it as it is, which is not a rotation.
-        if (!(length > 0) || (!(std::abs(length - 1) < 1e-3) && !file.is_old(node)))
-            file.log().problem(file.origin(node),
-                               "the rotation axis has length " + std::to_string(length) + ": give a unit vector",
-                               length > 0 ? "its direction counts" : "it is left out");
-        if (length > 0) result = rotation(axis / length, read_numbers(file, node, "angle", {1})[0]);
+        if (!(length > 0)) {
+            file.log().problem(file.origin(node), "the rotation axis has length 0: give a unit vector",
+                               "it is left out");
+            return result;
+        }
+        // Mitsuba 0.6 takes it for a direction, 3 puts it into Rodrigues' formula as it is.
+        const bool unit = std::abs(length - 1) < 1e-3 || file.is_old(node);
+        if (!unit)
+            file.log().notice(file.origin(node), "the rotation axis has length " + std::to_string(length) +
+                                                     ": as in Mitsuba 3, this scales besides");
+        result = rotation(unit ? axis / length : axis, read_numbers(file, node, "angle", {1})[0]);
     } else if (tag == "lookat") {
         file.check_attributes(node, {"origin", "target"}, {"up"});
         const auto vector = [&](const char* name) {

@@ -65,7 +65,7 @@ private:
             if (!textures_[i]) return;
             const Rgb value = value_of(*textures_[i]);
             if constexpr (std::is_same_v<std::remove_cvref_t<decltype(result.*parameter.member)>, float>)
-                parameter.set(result, luminance(value));
+                parameter.set(result, parameter.range.within(luminance(value)));
             else parameter.set(result, value);
         });
         return result;
