@@ -39,6 +39,7 @@ prb_projective prb_threepoint direct_reparam prb_reparam volprim_rf_basic emissi
 interpolated texture""".split())
 OBJECTS = {"bsdf", "shape", "emitter", "sensor", "film", "rfilter", "sampler", "integrator", "texture", "medium", "phase",
            "volume", "spectrum"}
+READERS = OBJECTS - {"film", "sampler", "integrator"}  # of files that they name
 
 
 def found(name, folders):
@@ -89,7 +90,7 @@ class MitsubaScene:
             return name.group(0)
         return re.sub(r"(?<!\\)\$(\w+)", replace, value)
 
-    def read(self, node, folder, depth):
+    def read(self, node, folder, depth, parent=""):
         places = self.folders + [folder]
         if node.tag == "default":
             self.values.setdefault(node.get("name"), self.text(node.get("value", "")))
@@ -101,8 +102,8 @@ class MitsubaScene:
         self.has_shape |= node.tag == "shape"
         if node.tag in OBJECTS and node.get("type") and self.text(node.get("type")) not in STOCK:
             self.own.add((node.tag, self.text(node.get("type"))))
-        if node.tag == "include" or (node.tag in ("string", "spectrum") and node.get("name") == "filename") or (
-                node.tag == "spectrum" and node.get("filename")):
+        if node.tag == "include" or (node.tag == "spectrum" and node.get("filename")) or (
+                node.tag == "string" and node.get("name") == "filename" and parent in READERS):
             name = self.text(node.get("filename") or node.get("value") or "")
             path = found(name, places)
             if not whole(path):
@@ -111,7 +112,7 @@ class MitsubaScene:
                 self.includes.append(os.path.realpath(path))
                 self.read(ElementTree.parse(path).getroot(), os.path.dirname(path), depth + 1)
         for child in node:
-            self.read(child, folder, depth)
+            self.read(child, folder, depth, node.tag)
 
 
 def missing_of_gltf(path):

@@ -333,6 +333,12 @@ TEST_CASE("emission: factor, texture and strength") {
     scene = load(with_material(R"({"emissiveFactor": [0, 0, 0], "emissiveTexture": {"index": 0}})",
                                images({png_uri(1, {{255, 0, 0}})})));
     CHECK_FALSE(scene.shapes[0].emission);
+    // Glowing parts are no lamp.
+    scene = load(with_material(R"({"emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": 0}})",
+                               images({png_uri(1, {{255, 0, 0}, {0, 0, 0}})})));
+    CHECK(scene.shapes[0].emission);
+    CHECK(scene.sources.size() == 1);
+    CHECK(load(with_material(R"({"emissiveFactor": [1, 1, 1]})")).sources.empty());
 
     Notices notices;
     scene = load(with_material(R"({"pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 0.25, 1]},

@@ -160,6 +160,11 @@ TEST_CASE("light is a source, or a shape that shines where it is seen") {
     CHECK(!has_light(scene));
     scene.shapes[0].emission = Rgb(0, 0, 1);
     CHECK(has_light(scene));
+    scene.shapes[0].emission_texture = Texture(Rgb(1));
+    CHECK(!has_light(scene));
+    scene.shapes[0].emission = Rgb(0, 0, 1.5f);
+    CHECK(has_light(scene));
+    scene.shapes[0].emission_texture.reset();
     scene.groups.push_back({.shapes = std::exchange(scene.shapes, {}), .origin = {}});
     CHECK(!has_light(scene));
     scene.instances.push_back({.group = 0, .to_world = DMat4(1), .origin = {}});

@@ -39,7 +39,7 @@ public:
             at_place(file_.origin(), [&] { frame_scene(scene_); });
         }
         if (!has_light(scene_)) {
-            notices_.add(file_.origin(), "nothing shines: a sky is added");
+            notices_.add(file_.origin(), "there is no light: a sky is added");
             add_default_sky(scene_);
         }
         scene_.files = file_.files();

@@ -70,6 +70,7 @@ inline FilmDescription read_film(const XmlFile& file, pugi::xml_node node, std::
     element.accept({"pixel_format", "component_format", "file_format", "banner", "compensate", "high_quality_edges",
                     "sample_border", "attach_log", "gamma", "tonemap_method", "key", "burn", "variable", "digits",
                     "channel_names"});
+    if (element.is_old()) element.accept({"filename"});
     for (const char* prefix : {"metadata", "label"}) element.accept_beginning(prefix);
     element.finish();
     check(film);

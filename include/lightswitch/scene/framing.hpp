@@ -5,6 +5,7 @@
 #include <lightswitch/scene/check.hpp>
 #include <lightswitch/scene/description.hpp>
 
+#include <algorithm>
 #include <memory>
 #include <numbers>
 
@@ -20,7 +21,8 @@ namespace lightswitch {
 template <class Material>
 void frame_scene(SceneDescription<Material>& scene);
 
-/// Whether anything shines: a source, or a shape that is seen and has an emission.
+/// Whether anything lights the scene: a source, or a shape that is seen and has an emission. Textures of emission up to 1
+/// are no light: they are the glowing parts of objects, made for programs where such parts light nothing.
 template <class Material>
 bool has_light(const SceneDescription<Material>& scene);
 
@@ -150,7 +152,11 @@ void frame_scene(SceneDescription<Material>& scene) {
 
 template <class Material>
 bool has_light(const SceneDescription<Material>& scene) {
-    const auto shines = [](const auto& shape) { return shape.emission && !is_black(*shape.emission); };
+    const auto shines = [](const auto& shape) {
+        if (!shape.emission || is_black(*shape.emission)) return false;
+        const Rgb& emission = *shape.emission;
+        return !shape.emission_texture || std::max({emission.x, emission.y, emission.z}) > 1;
+    };
     const auto shines_in_group = [&](const auto& instance) {
         const auto& shapes = scene.groups.at(instance.group).shapes;
         return std::any_of(shapes.begin(), shapes.end(), shines);
