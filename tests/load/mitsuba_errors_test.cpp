@@ -135,7 +135,7 @@ TEST_CASE("what a scene file cannot say is refused with file, line and element")
          "room.xml:3: <float name=\"radius\">: must be above 0"},
         {"<shape type=\"serialized\"/>", "the parameter \"filename\" is missing"},
         {"<shape type=\"obj\">" + obj + "<float name=\"max_smooth_angle\" value=\"30\"/></shape>",
-         "normals by angle are not supported"},
+         "unknown parameter \"max_smooth_angle\""},
         {"<shape type=\"obj\">" + obj + "\n<rgb name=\"colour\" value=\"1\"/></shape>",
          "room.xml:4: <shape type=\"obj\">: unknown parameter \"colour\"; known are face_normals, filename, "
          "flip_normals, "

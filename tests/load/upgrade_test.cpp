@@ -259,3 +259,39 @@ TEST_CASE("facets of Phong's model in version 0.6 are Beckmann's of the same rou
         CHECK(contains(message_of([&] { load_version("3.0.0", shape); }), "is not one of beckmann, ggx"));
     }
 }
+
+TEST_CASE("normals by angle: creases where triangles turn by more") {
+    const Folder folder;
+    // Two squares that meet at a right angle along the y axis, and one that goes on from the second, turned by 20 degrees.
+    folder.write(
+        "roof.obj",
+        "v 0 0 0\nv 0 1 0\nv -1 1 0\nv -1 0 0\nv 0 0 -1\nv 0 1 -1\nv 0.34202 0 -1.93969\nv 0.34202 1 -1.93969\n"
+        "vn 1 0 0\nf 1//1 2//1 3//1 4//1\nf 2//1 1//1 5//1 6//1\nf 6//1 5//1 7//1 8//1\n");
+    const auto roof = [&](const std::string& angle) {
+        const auto result = load_mitsuba(folder.write(
+            "room.xml", "<scene version=\"0.6.0\"><shape type=\"obj\"><string name=\"filename\" value=\"roof.obj\"/>" +
+                            angle + "</shape></scene>"));
+        return std::get<Mesh>(result.shapes.at(0).geometry);
+    };
+    const auto normal_at = [](const Mesh& mesh, std::size_t triangle, std::size_t corner) {
+        return mesh.normals.at(mesh.triangles[triangle][corner]);
+    };
+    const auto by_angle = [&](const char* degrees) {
+        return roof("<float name=\"maxSmoothAngle\" value=\"" + std::string(degrees) + "\"/>");
+    };
+    const Mesh creased = by_angle("40");
+    CHECK(creased.positions.size() == 10);
+    CHECK(glm::length(normal_at(creased, 0, 0) - normal_at(creased, 1, 0)) < 1e-12);
+    CHECK(glm::length(normal_at(creased, 0, 1) - DVec3(0, 0, 1)) < 1e-12);
+    CHECK(glm::length(normal_at(creased, 2, 0) - DVec3(1, 0, 0)) < 1e-12);
+    const DVec3 between = normal_at(creased, 3, 2);
+    CHECK(std::abs(std::atan2(between.z, between.x) - 10 * 3.14159265358979 / 180) < 1e-5);
+    CHECK(by_angle("10").positions.size() == 12);
+    CHECK(by_angle("95").positions.size() == 8);
+    CHECK(roof("").positions.size() == 8);
+    CHECK(contains(
+        message_of([&] {
+            roof("<float name=\"maxSmoothAngle\" value=\"30\"/><boolean name=\"faceNormals\" value=\"true\"/>");
+        }),
+        "give either it or face_normals"));
+}

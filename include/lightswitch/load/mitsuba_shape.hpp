@@ -148,10 +148,11 @@ private:
         // Mitsuba's defaults: most OBJ files have the origin of images at the top.
         const bool flip_v = element.boolean("flip_tex_coords", type == "obj");
         const int index = type == "serialized" ? element.integer("shape_index", 0).value_or(0) : 0;
-        const FileNormals use = flat ? FileNormals::ignore : FileNormals::use;
-        if (element.has("max_smooth_angle"))
-            element.problem("max_smooth_angle", "normals by angle are not supported", "it is ignored");
-        element.accept({"collapse", "max_smooth_angle"});
+        const auto crease = element.is_old() ? element.number("max_smooth_angle") : std::nullopt;
+        if (flat && crease)
+            element.problem("max_smooth_angle", "give either it or face_normals", "the triangles are flat");
+        const FileNormals use = flat || crease ? FileNormals::ignore : FileNormals::use;
+        element.accept({"collapse"});
         Notices notices;
         Mesh mesh = at_place(element.origin(), [&] {
             return type == "obj"   ? load_obj(path, use, &notices)
@@ -167,6 +168,7 @@ private:
         // As in Mitsuba 3.9, where there are no normals in the file a reflection turns the winding, and so the mesh
         // inside out.
         if (!has_normals && linear_determinant(to_world) < 0) mesh = std::move(mesh).flipped();
+        if (crease && !flat) mesh.split_creases(*crease);
         if (!has_normals && !flat) mesh.smooth();
         return flip ? std::move(mesh).flipped() : std::move(mesh);
     }

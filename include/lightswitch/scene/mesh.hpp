@@ -4,8 +4,10 @@
 
 #include <lightswitch/core/math.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -29,6 +31,11 @@ struct Mesh {
     /// "Computing Vertex Normals from Polygonal Facets", JGT 1998), as Mitsuba does. Triangles without area do not
     /// count; a position without any other triangle gets (1, 0, 0).
     void smooth();
+    /// Gives triangles that meet at more than `degrees` positions of their own, so that `smooth` leaves a crease between
+    /// them. Around a point its first triangle takes all with it whose normals are within the angle of its own, then the
+    /// first one that is left, and so on (`maxSmoothAngle` of Mitsuba 0.6). Positions that are equal, and have equal
+    /// texture coordinates, become one; normals go.
+    void split_creases(double degrees);
     /// Turns each triangle whose normals on the whole point to its back, so that the normals decide which side is the
     /// front.
     void face_along_normals();
@@ -114,6 +121,55 @@ inline void Mesh::smooth() {
         const double length = glm::length(n);
         n = length > 0 ? n / length : DVec3(1, 0, 0);
     }
+}
+
+inline void Mesh::split_creases(double degrees) {
+    constexpr std::uint32_t none = ~std::uint32_t{0};
+    constexpr int most = 1000;  // directions around one point, so that no file costs the square of its size
+    struct Corner {
+        std::size_t triangle, which;
+    };
+    std::vector<DVec3> units;
+    std::vector<Corner> corners;
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        const DVec3 normal = area_normal(triangles[i]);
+        const double length = glm::length(normal);
+        units.push_back(length > 0 ? normal / length : DVec3(0));
+        for (std::size_t c = 0; c < 3; ++c) corners.push_back({i, c});
+    }
+    const auto key = [&](const Corner& corner) {
+        const std::uint32_t at = triangles[corner.triangle][corner.which];
+        const Vec2 uv = at < uvs.size() ? uvs[at] : Vec2(0);
+        return std::tuple(positions[at].x, positions[at].y, positions[at].z, uv.x, uv.y);
+    };
+    std::sort(corners.begin(), corners.end(), [&](const Corner& a, const Corner& b) {
+        return std::tuple(key(a), a.triangle, a.which) < std::tuple(key(b), b.triangle, b.which);
+    });
+
+    Mesh split;
+    split.triangles.assign(triangles.size(), {none, none, none});
+    const auto place = [&](const Corner& corner) -> std::uint32_t& {
+        return split.triangles[corner.triangle][corner.which];
+    };
+    const double least = std::cos(glm::radians(degrees));
+    for (auto group = corners.begin(); group != corners.end();) {
+        const auto end =
+            std::find_if(group, corners.end(), [&](const auto& other) { return key(other) != key(*group); });
+        for (int directions = 0; group != end; ++group) {
+            if (place(*group) != none) continue;
+            const std::uint32_t from = triangles[group->triangle][group->which];
+            const auto number = static_cast<std::uint32_t>(split.positions.size());
+            split.positions.push_back(positions[from]);
+            if (!uvs.empty()) split.uvs.push_back(from < uvs.size() ? uvs[from] : Vec2(0));
+            const DVec3 first = units[group->triangle];
+            const auto last = ++directions < most ? end : std::next(group);
+            for (auto other = group; other != last; ++other) {
+                const DVec3& unit = units[other->triangle];
+                if (place(*other) == none && (unit == first || glm::dot(unit, first) > least)) place(*other) = number;
+            }
+        }
+    }
+    *this = std::move(split);
 }
 
 inline void Mesh::face_along_normals() {
