@@ -5,7 +5,8 @@
 
 PROGRAM is the program lightswitch. FOLDER holds checkouts of the repositories that docs/gallery.md names, each called
 OWNER+NAME; the scenes' files are no part of this project. Pictures stand row by row in the order of that table. Each is
-rendered with path-nee, or the method named below, and shown at its automatic exposure; notices and stand-ins are printed."""
+rendered with path-nee, or the method named below, and shown at its automatic exposure; notices and stand-ins are
+printed."""
 import argparse
 import os
 import struct
@@ -51,7 +52,8 @@ def read_png(path):
         begin = y * (size + 1)
         kind, row = raw[begin], bytearray(raw[begin + 1:begin + 1 + size])
         for i in range(size):
-            row[i] = (row[i] + predicted(kind, row[i - 3] if i >= 3 else 0, above[i], above[i - 3] if i >= 3 else 0)) & 255
+            left, corner = (row[i - 3], above[i - 3]) if i >= 3 else (0, 0)
+            row[i] = (row[i] + predicted(kind, left, above[i], corner)) & 255
         rows.append(row)
         above = row
     return width, height, rows
@@ -73,9 +75,11 @@ def write_png(path, width, rows):
         # The filter whose bytes are smallest in sum, as PNG's specification advises.
         tries = []
         for kind in range(5):
-            line = bytes((row[i] - predicted(kind, row[i - 3] if i >= 3 else 0, above[i], above[i - 3] if i >= 3 else 0))
-                         & 255 for i in range(len(row)))
-            tries.append((sum(min(value, 256 - value) for value in line), kind, line))
+            line = bytearray()
+            for i in range(len(row)):
+                left, corner = (row[i - 3], above[i - 3]) if i >= 3 else (0, 0)
+                line.append((row[i] - predicted(kind, left, above[i], corner)) & 255)
+            tries.append((sum(min(value, 256 - value) for value in line), kind, bytes(line)))
         _, kind, line = min(tries)
         raw += bytes([kind]) + line
         above = row
@@ -112,8 +116,9 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         for scene, times, extra in SCENES:
             picture = os.path.join(folder, "picture.png")
-            command = [options.program, "render", os.path.join(options.folder, scene), "--lenient", "--size", options.size,
-                       "--spp", str(times * options.spp), "--exposure", "auto", "--output", picture] + extra
+            command = [options.program, "render", os.path.join(options.folder, scene), "--lenient",
+                       "--size", options.size, "--spp", str(times * options.spp), "--exposure", "auto",
+                       "--output", picture] + extra
             print(scene, file=sys.stderr, flush=True)
             subprocess.run(command, check=True)
             pictures.append(read_png(picture)[2])

@@ -3,15 +3,16 @@
 
     bench/scenes.py [OPTION...] PROGRAM FOLDER...
 
-PROGRAM is the program lightswitch; each FOLDER is a checkout of one repository. Its scenes are the XML files whose root is a
-<scene> of some version, .gltf and .glb, and OBJ files with a material file. Set apart are fragments (XML that another file
-includes, or without a shape), XML that is not well-formed or of another program, copies of a file that was counted before,
-and scenes of which a mesh, an image or another file is not in the repository, or which need values for $name.
+PROGRAM is the program lightswitch; each FOLDER is a checkout of one repository. Its scenes are the XML files whose root
+is a <scene> of some version, .gltf and .glb, and OBJ files that name a material file. Set apart are fragments (XML that
+another file includes, or without a shape), XML that is not well-formed or of another program, copies of a file that was
+counted before, and scenes of which a mesh, an image or another file is not in the repository, or which need values for
+$name.
 
 `lightswitch info` opens each and builds it to be rendered, within --seconds and --gib. `strictly` are those without a
-problem, `leniently` those that open at all, these included; a time-out, too much memory or a signal is neither. `plain` are
-Mitsuba scenes of version 2 and 3 without a plug-in of their own, by the names below. With --mitsuba, Mitsuba (scalar_rgb) in
-that Python loads the XML files as well, within the same bounds; `theirs` are those that it loads.
+problem, `leniently` those that open at all, these included; a time-out, too much memory or a signal is neither. `plain`
+are Mitsuba scenes of version 2 and 3 without a plug-in of their own, by the names below. With --mitsuba, Mitsuba
+(scalar_rgb) in that Python loads the XML files as well, within the same bounds; `theirs` are those that it loads.
 
 At last come the causes why files do not open strictly, by the number of files; a file may have several."""
 import argparse
@@ -27,18 +28,19 @@ import urllib.parse
 import xml.etree.ElementTree as ElementTree
 
 # Plug-ins of Mitsuba 2 and 3, by the files that 3.9.1 installs, its integrators in Python, and what 2 had besides.
-STOCK = set("""aov area batch bitmap blackbody blendbsdf blendphase box bsplinecurve bumpmap catmullrom checkerboard circular
-conductor constant constvolume cube cylinder d65 depth dielectric diffuse direct directional directionalarea disk distant
-ellipsoids ellipsoidsmesh envmap gaussian gridvolume hair hdrfilm heterogeneous hg homogeneous independent instance
-irradiancemeter irregular isotropic lanczos ldsampler linearcurve mask measured measured_polarized merge mesh_attribute mitchell
-moment multijitter normalmap null obj orthogonal orthographic path perspective plastic ply point polarizer pplastic principled
-principledthin projector ptracer radiancemeter rawconstant rayleigh rectangle regular retarder roughconductor roughdielectric
-roughplastic sdfgrid serialized sggx shapegroup specfilm sphere spot srgb stokes stratified sunsky sky sun tabphase tent
-thindielectric thinlens timed_sunsky twosided uniform volpath volpathmis volume prb prb_basic prbvolpath direct_projective
-prb_projective prb_threepoint direct_reparam prb_reparam volprim_rf_basic emission_reparam scale scene d65 rgb srgb_d65
-interpolated texture""".split())
-OBJECTS = {"bsdf", "shape", "emitter", "sensor", "film", "rfilter", "sampler", "integrator", "texture", "medium", "phase",
-           "volume", "spectrum"}
+STOCK = set("""
+aov area batch bitmap blackbody blendbsdf blendphase box bsplinecurve bumpmap catmullrom checkerboard circular
+conductor constant constvolume cube cylinder d65 depth dielectric diffuse direct direct_projective direct_reparam
+directional directionalarea disk distant ellipsoids ellipsoidsmesh emission_reparam envmap gaussian gridvolume hair
+hdrfilm heterogeneous hg homogeneous independent instance interpolated irradiancemeter irregular isotropic lanczos
+ldsampler linearcurve mask measured measured_polarized merge mesh_attribute mitchell moment multijitter normalmap null
+obj orthogonal orthographic path perspective plastic ply point polarizer pplastic prb prb_basic prb_projective
+prb_reparam prb_threepoint prbvolpath principled principledthin projector ptracer radiancemeter rawconstant rayleigh
+rectangle regular retarder rgb roughconductor roughdielectric roughplastic scale scene sdfgrid serialized sggx
+shapegroup sky specfilm sphere spot srgb srgb_d65 stokes stratified sun sunsky tabphase tent texture thindielectric
+thinlens timed_sunsky twosided uniform volpath volpathmis volprim_rf_basic volume""".split())
+OBJECTS = {"bsdf", "shape", "emitter", "sensor", "film", "rfilter", "sampler", "integrator", "texture", "medium",
+           "phase", "volume", "spectrum"}
 READERS = OBJECTS - {"film", "sampler", "integrator"}  # of files that they name
 
 
@@ -219,7 +221,10 @@ def opened(options, path):
     return "leniently", [cause(line) for line in lines[begin + 1:]]
 
 
-LOAD = "import sys, mitsuba as mi; mi.set_variant('scalar_rgb'); mi.set_log_level(mi.LogLevel.Error); mi.load_file(sys.argv[1])"
+LOAD = """import sys, mitsuba as mi
+mi.set_variant('scalar_rgb')
+mi.set_log_level(mi.LogLevel.Error)
+mi.load_file(sys.argv[1])"""
 
 
 def percent(part, whole_number):
@@ -266,21 +271,24 @@ def main():
                 files[each] += 1
                 folders_with[each].add(name)
             if listing:
-                listing.write("\t".join([kind, verdict, theirs, "own" if own else "plain", path, " | ".join(causes)]) + "\n")
+                line = [kind, verdict, theirs, "own" if own else "plain", path, " | ".join(causes)]
+                listing.write("\t".join(line) + "\n")
                 listing.flush()
         total.update(counts)
         if scenes or sum(apart_here.values()):
             rows.append((name, counts, apart_here))
             print("%s: %d" % (name, len(scenes)), file=sys.stderr, flush=True)
 
-    columns = ["repository", "scenes", "0.x", "2-3", "glTF, OBJ", "strictly", "leniently", "time-outs", "crashes", "set apart"]
+    columns = ["repository", "scenes", "0.x", "2-3", "glTF, OBJ", "strictly", "leniently", "time-outs", "crashes",
+               "set apart"]
     print("| " + " | ".join(columns) + " |\n|" + "---|" * len(columns))
     for name, counts, apart_here in rows + [("**all**", total, apart)]:
         if counts["all"] == 0:
             continue
         print("| %s | %d | %d | %d | %d | %d | %d | %d | %d | %d |" % (
-            name, counts["all"], counts["0.x"], counts["2-3"], counts["glTF"] + counts["OBJ"], counts["all", "strictly"],
-            counts["all", "leniently"], counts["time-out"], counts["crash"], sum(apart_here.values())))
+            name, counts["all"], counts["0.x"], counts["2-3"], counts["glTF"] + counts["OBJ"],
+            counts["all", "strictly"], counts["all", "leniently"], counts["time-out"], counts["crash"],
+            sum(apart_here.values())))
     print("\nfolders with scenes: %d; set apart: %s\n" % (
         sum(counts["all"] > 0 for _, counts, _ in rows), ", ".join("%s %d" % pair for pair in apart.most_common())))
     print("| of | files | strictly | leniently |\n|---|---|---|---|")
