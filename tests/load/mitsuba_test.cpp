@@ -173,6 +173,9 @@ TEST_CASE("BSDFs are read with their parameters") {
     CHECK(rough.eta == Rgb(1, 2, 3));
     CHECK(rough.k == Rgb(4));
     CHECK(bsdf("<bsdf type=\"twosided\"><bsdf type=\"conductor\"/></bsdf>").get<Conductor>());
+    // A number that is given as a colour is its mean, as in Mitsuba.
+    const auto tinted = bsdf("<bsdf type=\"principled\"><rgb name=\"spec_tint\" value=\"0.25 0.5 0.9\"/></bsdf>");
+    CHECK(tinted.as<Principled>().spec_tint == relative(0.55, 1e-6));
     // Mitsuba raises a roughness of 0, in a texture, too.
     CHECK(
         bsdf("<bsdf type=\"roughconductor\"><float name=\"alpha\" value=\"0\"/></bsdf>").as<RoughConductor>().alpha_v ==

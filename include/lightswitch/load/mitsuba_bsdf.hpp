@@ -63,7 +63,12 @@ void read_parameters(XmlElement& element, B& model) {
         if (!element.has(name)) return;
         const auto in_range = [&](float value) { return clamped(element, name, parameter.range, value); };
         if constexpr (std::is_same_v<std::remove_cvref_t<decltype(model.*parameter.member)>, float>) {
-            if (const auto value = element.number(name)) parameter.set(model, in_range(static_cast<float>(*value)));
+            if (element.is_color(name)) {  // of which Mitsuba takes the mean
+                const Rgb color = element.color(name, Rgb(model.*parameter.member));
+                parameter.set(model, in_range((color.x + color.y + color.z) / 3));
+            } else if (const auto value = element.number(name)) {
+                parameter.set(model, in_range(static_cast<float>(*value)));
+            }
         } else {
             const Rgb value = element.color(name, model.*parameter.member,
                                             parameter.range.most > 1 ? SpectrumUse::index : SpectrumUse::reflectance);

@@ -33,12 +33,9 @@ public:
         return std::any_of(objects_.begin(), objects_.end(),
                            [&](pugi::xml_node node) { return node.attribute("name").value() == name; });
     }
-    bool has_string(const std::string& name) const {
-        return has(name) && std::string_view(parameters_.at(name).name()) == "string";
-    }
-    bool is_vector(const std::string& name) const {
-        return has(name) && std::string_view(parameters_.at(name).name()) == "vector";
-    }
+    bool has_string(const std::string& name) const { return has_tag(name, {"string"}); }
+    bool is_vector(const std::string& name) const { return has_tag(name, {"vector"}); }
+    bool is_color(const std::string& name) const { return has_tag(name, {"rgb", "srgb", "spectrum"}); }
     /// Place of a parameter that is there.
     Origin origin(const std::string& name) const { return file_.origin(parameters_.at(name)); }
     /// Takes down what is wrong with that parameter, if it is there, or else with the element.
@@ -97,6 +94,10 @@ public:
     }
 
 private:
+    bool has_tag(const std::string& name, std::initializer_list<std::string_view> tags) const {
+        const auto found = parameters_.find(name);
+        return found != parameters_.end() && std::find(tags.begin(), tags.end(), found->second.name()) != tags.end();
+    }
     void sort(pugi::xml_node child);
     /// The parameter's element if it is there; throws when its tag is none of `tags`.
     pugi::xml_node find(const std::string& name, std::initializer_list<std::string_view> tags);
