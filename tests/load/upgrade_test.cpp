@@ -262,7 +262,8 @@ TEST_CASE("facets of Phong's model in version 0.6 are Beckmann's of the same rou
 
 TEST_CASE("normals by angle: creases where triangles turn by more") {
     const Folder folder;
-    // Two squares that meet at a right angle along the y axis, and one that goes on from the second, turned by 20 degrees.
+    // Two squares that meet at a right angle along the y axis, and one that goes on from the second, turned by 20
+    // degrees.
     folder.write(
         "roof.obj",
         "v 0 0 0\nv 0 1 0\nv -1 1 0\nv -1 0 0\nv 0 0 -1\nv 0 1 -1\nv 0.34202 0 -1.93969\nv 0.34202 1 -1.93969\n"

@@ -21,8 +21,8 @@ namespace lightswitch {
 template <class Material>
 void frame_scene(SceneDescription<Material>& scene);
 
-/// Whether anything lights the scene: a source, or a shape that is seen and has an emission. Textures of emission up to 1
-/// are no light: they are the glowing parts of objects, made for programs where such parts light nothing.
+/// Whether anything lights the scene: a source, or a shape that is seen and has an emission. Textures of emission up to
+/// 1 are no light: they are the glowing parts of objects, made for programs where such parts light nothing.
 template <class Material>
 bool has_light(const SceneDescription<Material>& scene);
 

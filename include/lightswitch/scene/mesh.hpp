@@ -31,10 +31,10 @@ struct Mesh {
     /// "Computing Vertex Normals from Polygonal Facets", JGT 1998), as Mitsuba does. Triangles without area do not
     /// count; a position without any other triangle gets (1, 0, 0).
     void smooth();
-    /// Gives triangles that meet at more than `degrees` positions of their own, so that `smooth` leaves a crease between
-    /// them. Around a point its first triangle takes all with it whose normals are within the angle of its own, then the
-    /// first one that is left, and so on (`maxSmoothAngle` of Mitsuba 0.6). Positions that are equal, and have equal
-    /// texture coordinates, become one; normals go.
+    /// Gives triangles that meet at more than `degrees` positions of their own, so that `smooth` leaves a crease
+    /// between them. Around a point its first triangle takes all with it whose normals are within the angle of its own,
+    /// then the first one that is left, and so on (`maxSmoothAngle` of Mitsuba 0.6). Positions that are equal, and have
+    /// equal texture coordinates, become one; normals go.
     void split_creases(double degrees);
     /// Turns each triangle whose normals on the whole point to its back, so that the normals decide which side is the
     /// front.
