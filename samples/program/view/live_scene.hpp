@@ -83,8 +83,8 @@ public:
     /// To be changed at will; `update` follows it.
     CameraControl camera;
 
-    /// Fetches what is new, and follows the camera. Throws `Error` when that has gone where it cannot see the scene from;
-    /// it is then where it was before.
+    /// Fetches what is new, and follows the camera. Throws `Error` when that has gone where it cannot see the scene
+    /// from; it is then where it was before.
     void update();
 
     /// The verdict about the shown method by the reference; nothing when it is not asked for.
