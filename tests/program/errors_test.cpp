@@ -41,8 +41,9 @@ TEST_CASE("a command that is missing, unknown or misspelt") {
     check_refused(
         workspace,
         {
-            {{}, "name a command: render, compare, verify, strategies, methods, info"},
-            {{"rendr"}, "did you mean \"render\"?; known are render, compare, verify, strategies, methods, info"},
+            {{}, "name a command: render, view, compare, verify, strategies, replay, methods, info"},
+            {{"rendr"},
+             "did you mean \"render\"?; known are render, view, compare, verify, strategies, replay, methods, info"},
             {{"--bogus"}, "there is no option \"--bogus\""},
             {{"methods", "path"}, "there is no use for \"path\""},
             {{"--", "render"}, "name a command"},
