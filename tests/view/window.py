@@ -315,10 +315,10 @@ def make_picture(program, display, path):
                                  "path-nee", "--window", "1280x800"], cwd=directory)
         display.wait_for_title(bool)
         for method in ("8", "5", "7"):
-            time.sleep(20)
+            time.sleep(6)
             display.key(method)
         display.key("F4")
-        time.sleep(60)
+        time.sleep(30)
         display.do("mousemove", 640, 790)
         time.sleep(1)
         width, height, rows = display.pixels()

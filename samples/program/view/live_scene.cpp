@@ -40,6 +40,15 @@ FilmDescription film_of(const AnyScene& scene) {
     return std::visit([](const auto& s) { return s.film(); }, scene);
 }
 
+/// The same view with at most 128 pixels a side: verdicts need no more, as those of the command line.
+AnyScene scene_to_verify(const AnyScene& scene, const CameraDescription& camera, FilmDescription film) {
+    constexpr double most = 128;
+    const double scale = std::min(1.0, most / std::max(film.width, film.height));
+    const auto scaled = [&](int length) { return std::max(1, static_cast<int>(std::lround(scale * length))); };
+    film.resize(scaled(film.width), scaled(film.height));
+    return std::visit([&](const auto& s) -> AnyScene { return s.with_camera(camera, film); }, scene);
+}
+
 /// Longer work than this is not thrown away without asking.
 constexpr double worth_saving = 30;  // seconds of rendering
 constexpr std::size_t most_kept = 14;
@@ -146,7 +155,7 @@ void LiveScene::verify_anew() {
     verdict_view_ = view_;
     moved_ = Clock::now();
     if (!verifies_ || !reference_ || *reference_ == shown_ || held_) return;
-    const auto scene = live_.scene();
+    const auto scene = std::make_shared<const AnyScene>(scene_to_verify(*live_.scene(), seen_by_.description(), film_));
     const AnyMethod ours = methods_[shown_].method, theirs = methods_[*reference_].method;
     verdict_.start([=, settings = settings_, wake = wake_](const std::stop_token& stop, const auto& publish) {
         VerdictSoFar so_far;
