@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 namespace lightswitch::program {
@@ -106,15 +107,8 @@ LoadedScene load_scene(const SceneOptions& options, bool quiet, StandIns tell_st
     for (const Problem& problem : problems) stand_ins.push_back(line(problem));
     if (tell_stand_ins == StandIns::warn)
         for (const std::string& text : stand_ins) print_warning(text);
-    const FilmDescription& film = description.film;
-    if (options.size) {
-        description.film.resize(options.size->width, options.size->height);
-    } else if (const int side = std::max(film.width, film.height); options.shrink_to > 0 && side > options.shrink_to) {
-        const auto shrunk = [&](int length) {
-            return std::max(1, static_cast<int>(std::lround(double(length) * options.shrink_to / side)));
-        };
-        description.film.resize(shrunk(film.width), shrunk(film.height));
-    }
+    if (options.size) description.film.resize(options.size->width, options.size->height);
+    else if (options.shrink_to > 0) description.film.shrink(options.shrink_to);
     if (options.filter) description.film.filter = *options.filter;
     SceneSummary summary = summarize(description);
     summary.stand_ins = std::move(stand_ins);
@@ -129,6 +123,16 @@ PathLength path_length(const SceneSummary& summary, const std::optional<int>& ma
             .rr_depth = rr_depth.value_or(summary.rr_depth.value_or(usual.rr_depth))};
 }
 
+void keep_stand_ins(Image& image, const SceneSummary& summary) {
+    constexpr std::size_t most = 50;  // a header should not outgrow its image
+    const std::vector<std::string>& stand_ins = summary.stand_ins;
+    if (stand_ins.empty()) return;
+    const auto end = stand_ins.begin() + static_cast<std::ptrdiff_t>(std::min(most, stand_ins.size()));
+    std::string text = fmt::format("{}", fmt::join(stand_ins.begin(), end, " | "));
+    if (stand_ins.size() > most) text += fmt::format(" | and {} more", stand_ins.size() - most);
+    image.metadata["stand_ins"] = text;
+}
+
 std::optional<Box> bounds(const AnyScene& any_scene) {
     return std::visit(
         [](const auto& scene) -> std::optional<Box> {
@@ -136,9 +140,7 @@ std::optional<Box> bounds(const AnyScene& any_scene) {
             RTCBounds box;
             rtcGetSceneBounds(scene.accelerator().handle(), &box);
             const RenderSpace& space = scene.space();
-            const auto corner = [&](float x, float y, float z) {
-                return space.center() + DVec3(x, y, z) / space.scale();
-            };
+            const auto corner = [&](float x, float y, float z) { return space.scene_point(DVec3(x, y, z)); };
             return Box{corner(box.lower_x, box.lower_y, box.lower_z), corner(box.upper_x, box.upper_y, box.upper_z)};
         },
         any_scene);

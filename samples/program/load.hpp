@@ -38,6 +38,9 @@ LoadedScene load_scene(const SceneOptions& options, bool quiet = false, StandIns
 PathLength path_length(const SceneSummary& summary, const std::optional<int>& max_depth,
                        const std::optional<int>& rr_depth);
 
+/// Tells in the image's metadata what stood in for what the scene file says, so that a format which holds them does.
+void keep_stand_ins(Image& image, const SceneSummary& summary);
+
 /// A box in scene units.
 struct Box {
     DVec3 lower, upper;

@@ -63,16 +63,6 @@ std::optional<float> exposure_of_pictures(const RenderOptions& options, const Sc
     return auto_exposure(image);
 }
 
-/// What stood in for what the scene file says, where the format of the image can hold it.
-void keep_stand_ins(Image& image, const std::vector<std::string>& stand_ins) {
-    constexpr std::size_t most = 50;  // a header should not outgrow its image
-    if (stand_ins.empty()) return;
-    const auto end = stand_ins.begin() + static_cast<std::ptrdiff_t>(std::min(most, stand_ins.size()));
-    std::string text = fmt::format("{}", fmt::join(stand_ins.begin(), end, " | "));
-    if (stand_ins.size() > most) text += fmt::format(" | and {} more", stand_ins.size() - most);
-    image.metadata["stand_ins"] = text;
-}
-
 std::string summary_line(const AnyMethod& method, const Rendered& rendered, const RenderOptions& options,
                          const std::optional<float>& exposure) {
     const RenderStatistics& statistics = rendered.statistics;
@@ -131,7 +121,7 @@ int render(const RenderOptions& options) {
         return Status::cancelled;
     }
     warn_about_values(statistics.counts, rendered.image);
-    keep_stand_ins(rendered.image, loaded.summary.stand_ins);
+    keep_stand_ins(rendered.image, loaded.summary);
     const auto exposure = exposure_of_pictures(options, loaded.summary, rendered.image);
     for (const auto& output : options.outputs)
         write_image(output, rendered.image, {.exposure = exposure.value_or(0)}, layers);

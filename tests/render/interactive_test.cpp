@@ -116,6 +116,29 @@ TEST_CASE("A move of the camera begins anew, first with coarse pictures") {
           std::visit([](const auto& s) { return s.camera_id(); }, other));
 }
 
+TEST_CASE("After a move nothing of an earlier view is left, but of what is shown until there is something newer") {
+    const LibraryDescription description = small_box();
+    Interactive live(build_any(description), description.camera);
+    const std::size_t shown = live.add(PathTracerNee{}), other = live.add(Silhouette{});
+    live.limit(2);
+    for (const std::size_t method : {other, shown}) {
+        live.show(method);
+        live.wait();
+    }
+    REQUIRE(live.snapshot(other));
+    CameraDescription moved = description.camera;
+    moved.fov += 5;
+    live.move(moved, description.film);
+    CHECK(!live.snapshot(other));
+    REQUIRE(live.snapshot(shown));
+    live.show(std::vector<std::size_t>{});
+    const auto left = live.snapshot(shown);
+    CHECK((!left || left->view == 1));
+    live.show({shown, other});
+    live.wait();
+    for (const std::size_t method : {other, shown}) CHECK(live.snapshot(method)->view == 1);
+}
+
 TEST_CASE("Many moves in a row end at the last one") {
     const LibraryDescription description = small_box(128);
     Interactive live(build_any(description), description.camera);

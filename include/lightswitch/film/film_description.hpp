@@ -38,6 +38,15 @@ struct FilmDescription {
         width = new_width;
         height = new_height;
     }
+    /// Makes the longer side at most that long, in pixels, and the other one in proportion.
+    void shrink(int most) {
+        const int side = std::max(width, height);
+        if (side <= most) return;
+        const auto scaled = [&](int length) {
+            return std::max(1, static_cast<int>(std::lround(double(length) * most / side)));
+        };
+        resize(scaled(width), scaled(height));
+    }
     double aspect() const { return static_cast<double>(full_size().first) / full_size().second; }
 };
 

@@ -5,6 +5,7 @@
 #include <lightswitch/camera/camera_description.hpp>
 #include <lightswitch/film/film_description.hpp>
 #include <lightswitch/render/any_session.hpp>
+#include <lightswitch/render/coarse.hpp>
 #include <lightswitch/render/snapshot.hpp>
 
 #include <algorithm>
@@ -63,6 +64,7 @@ public:
         change(Interruption::pause, [&] {
             for (const std::size_t method : methods) tracks_.at(method).turn = 0;
             shown_ = std::move(methods);
+            forget_older();
         });
     }
     void show(std::size_t method) { show(std::vector<std::size_t>{method}); }
@@ -76,6 +78,7 @@ public:
             camera_ = camera;
             ++view_;
             moved_ = true;
+            forget_older();
         });
     }
 
@@ -84,7 +87,8 @@ public:
         change(Interruption::none, [&] { limit_ = iterations; });
     }
 
-    /// What the method has made; nothing before its first picture.
+    /// What the method has made; nothing before its first picture. After a move, of a method that is shown it is of the
+    /// view before until there is something newer, so that nothing flashes.
     std::shared_ptr<const Snapshot> snapshot(std::size_t method) const {
         const std::lock_guard lock(mutex_);
         return tracks_.at(method).snapshot;
@@ -200,6 +204,14 @@ private:
         return best;
     }
 
+    /// Pictures of earlier views, but of what is shown. Called locked.
+    void forget_older() {
+        for (std::size_t i = 0; i < tracks_.size(); ++i)
+            if (auto& kept = tracks_[i].snapshot;
+                kept && kept->view != view_ && std::find(shown_.begin(), shown_.end(), i) == shown_.end())
+                kept.reset();
+    }
+
     /// Called locked.
     void begin_anew() {
         moved_ = false;
@@ -221,7 +233,8 @@ private:
     /// Makes the next coarse picture or iteration; returns a snapshot when it is time for one. Called unlocked.
     std::shared_ptr<const Snapshot> advance(Track& track, const Task& task) {
         if (!track.session) {
-            if (const int divisor = next_coarse(track, task); divisor > 1) return coarse_picture(track, task, divisor);
+            const int divisor = detail::next_coarse(film_of(*task.scene), track.seconds_per_pixel, track.coarse);
+            if (divisor > 1) return coarse_picture(track, task, divisor);
             auto session = track.make(*task.scene, settings(task));
             if (task.abandon.stop_requested()) return {};
             track.scene = task.scene;
@@ -268,19 +281,6 @@ private:
 
     static FilmDescription film_of(const SceneType& any_scene) {
         return detail::visit_any([](const auto& scene) { return scene.film(); }, any_scene);
-    }
-
-    /// How many times smaller the next coarse picture is; 1 when it is time for the image itself.
-    static int next_coarse(const Track& track, const Task& task) {
-        const FilmDescription film = film_of(*task.scene);
-        const double pixels = double(film.width) * film.height;
-        constexpr double moment = 0.05, unknown = 2e-5;  // seconds; for a pixel
-        const double per_pixel = track.seconds_per_pixel > 0 ? track.seconds_per_pixel : unknown;
-        if (track.coarse > 0) return pixels * per_pixel > 3 * moment ? track.coarse / 2 : 1;
-        int divisor = 1;
-        while (pixels * per_pixel > moment * divisor * divisor && 2 * divisor <= std::min(film.width, film.height))
-            divisor *= 2;
-        return divisor;
     }
 
     std::shared_ptr<const Snapshot> coarse_picture(Track& track, const Task& task, int divisor) const {

@@ -54,7 +54,7 @@ void Interface::make_commands() {
         "Compare", "with nothing", "Shift+9", GLFW_KEY_9, shift,
         [this] {
             live_->compare_with({});
-            if (compares()) set_view(View::image);
+            if (compares()) view_ = View::image;
         },
         [this] { return live_ && !live_->reference(); }, there);
     add(
@@ -78,7 +78,7 @@ void Interface::make_commands() {
         const bool two = view > View::image && view < View::albedo;
         add(
             "View", std::string(name(view)), fmt::format("F{}", i + 2), GLFW_KEY_F2 + i, 0,
-            [this, view] { set_view(view); }, [this, view] { return view_ == view; },
+            [this, view] { view_ = view; }, [this, view] { return view_ == view; },
             two ? std::function<bool()>(compared) : there);
     }
     add("View", "Brighter", "=", GLFW_KEY_EQUAL, 0, [this] { display_.stops += 0.5f; });

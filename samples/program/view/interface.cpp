@@ -56,8 +56,6 @@ void Interface::set_scene(LoadedScene loaded, const ViewOptions& options) {
 
 std::string Interface::scene_name() const { return std::filesystem::path(options_.scene.scene).filename().string(); }
 
-void Interface::set_view(View view) { view_ = view; }
-
 bool Interface::compares() const { return view_ > View::image && view_ < View::albedo; }
 
 bool Interface::moves() const { return view_ == View::flicker || moves_camera_ || ImGui::GetIO().WantTextInput; }
@@ -113,7 +111,7 @@ void Interface::frame() {
     const ImGuiIO& io = ImGui::GetIO();
     const float top = ImGui::GetFrameHeight(), bottom = ImGui::GetFrameHeight();
     const float height = std::max(io.DisplaySize.y - top - bottom, 1.0f);
-    const float panel = shows_panel_ ? std::min(340 * window_.scale(), 0.6f * io.DisplaySize.x) : 0;
+    const float panel = panel_width();
     // The window is cleared already: painting it again would be most of the work where the processor does it.
     constexpr ImGuiWindowFlags fixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                                        ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoSavedSettings |
@@ -129,7 +127,7 @@ void Interface::frame() {
         ImGui::SetNextWindowPos({io.DisplaySize.x - panel, top});
         ImGui::SetNextWindowSize({panel, height});
         ImGui::Begin("panel", nullptr, fixed & ~ImGuiWindowFlags_NoScrollbar);
-        side_panel(ImGui::GetContentRegionAvail().x, height);
+        side_panel();
         ImGui::End();
     }
     status_bar();
@@ -209,7 +207,7 @@ void Interface::next_non_finite() {
     const auto& places = snapshot->statistics.counts.first_non_finite;
     const NonFinite& place = places[non_finite_++ % places.size()];
     const auto width = static_cast<std::uint32_t>(live_->film().width);
-    pick(static_cast<int>(place.pixel % width), static_cast<int>(place.pixel / width));
+    picked_ = {static_cast<int>(place.pixel % width), static_cast<int>(place.pixel / width)};
     zoom_ = std::max(zoom_, 16.0f);
     center_ = {(picked_->first + 0.5) / live_->film().width, (picked_->second + 0.5) / live_->film().height};
     follow(static_cast<std::int64_t>(place.iteration));

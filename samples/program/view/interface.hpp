@@ -38,7 +38,7 @@ class Interface {
 public:
     Interface(Window& window, const ViewOptions& options);
 
-    /// Shows another scene, with a notice of what it is.
+    /// Shows another scene.
     void set_scene(LoadedScene loaded, const ViewOptions& options);
     const LiveScene* scene() const { return live_.get(); }
 
@@ -53,7 +53,7 @@ public:
 
 private:
     struct Command {
-        const char* menu;  // empty: no menu has it
+        const char* menu;
         std::string text, key_text;
         int key, modifiers;
         std::function<void()> act;
@@ -95,7 +95,8 @@ private:
     bool compares() const;
 
     // panels.cpp
-    void side_panel(float width, float height);
+    float panel_width() const;
+    void side_panel();
     void method_table();
     void compare_panel();
     void verdict_panel();
@@ -107,7 +108,6 @@ private:
     void begin_save(const std::string& ending);
     void save(const std::filesystem::path& file);
     void open(const std::string& scene);
-    void set_view(View view);
     void pick(int x, int y);
     void follow(std::int64_t iteration);
     void follow_brightest();

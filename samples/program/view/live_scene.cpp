@@ -20,7 +20,7 @@ double pivot_distance(const AnyScene& any_scene, const CameraDescription& camera
             const Ray ray = scene.camera().ray({0.5f * float(film.width), 0.5f * float(film.height)}, Vec2(0.5f));
             double distance = scene.radius() / scene.space().scale();
             if (const auto hit = scene.intersect(ray)) {
-                const DVec3 place = scene.space().center() + DVec3(hit->position) / scene.space().scale();
+                const DVec3 place = scene.space().scene_point(DVec3(hit->position));
                 const double along = glm::dot(place - DVec3(camera.to_world[3]), DVec3(camera.to_world[2]));
                 if (along > 0) distance = along;
             }
@@ -42,10 +42,7 @@ FilmDescription film_of(const AnyScene& scene) {
 
 /// The same view with at most 128 pixels a side: verdicts need no more, as those of the command line.
 AnyScene scene_to_verify(const AnyScene& scene, const CameraDescription& camera, FilmDescription film) {
-    constexpr double most = 128;
-    const double scale = std::min(1.0, most / std::max(film.width, film.height));
-    const auto scaled = [&](int length) { return std::max(1, static_cast<int>(std::lround(scale * length))); };
-    film.resize(scaled(film.width), scaled(film.height));
+    film.shrink(128);
     return std::visit([&](const auto& s) -> AnyScene { return s.with_camera(camera, film); }, scene);
 }
 
@@ -209,7 +206,10 @@ void LiveScene::update() {
         }
         seen_by_ = camera;
         ++view_;
-        if (held_) hold(false);  // there is nothing to look at yet
+        if (held_) {  // there is nothing to look at yet
+            held_ = false;
+            choose();
+        }
         for (LiveMethod& method : methods_) {
             method.curve.clear();
             method.kept.clear();
@@ -224,12 +224,13 @@ void LiveScene::update() {
     if (verdict_view_ != view_ && Clock::now() - moved_ > std::chrono::milliseconds(700)) verify_anew();
     for (std::size_t i = 0; i < methods_.size(); ++i) {
         auto snapshot = live_.snapshot(i);
-        if (snapshot && snapshot != methods_[i].snapshot) take(methods_[i], std::move(snapshot));
+        if (snapshot != methods_[i].snapshot) take(methods_[i], std::move(snapshot));
     }
 }
 
 void LiveScene::take(LiveMethod& method, std::shared_ptr<const Snapshot> snapshot) {
     method.snapshot = std::move(snapshot);
+    if (!method.snapshot) return;
     const Snapshot& now = *method.snapshot;
     if (now.iterations == 0 || now.view != view_) return;
     if (now.statistics.seconds > worth_saving) method.unsaved = true;
@@ -331,7 +332,9 @@ void LiveScene::follow(const ReplayedPixel& at, bool brightest) {
 Image LiveScene::image_to_save(std::size_t method) const {
     const auto& snapshot = methods_[method].snapshot;
     if (!snapshot || snapshot->iterations == 0) throw Error(methods_[method].name + " has no image of this view yet");
-    return snapshot->image;
+    Image image = snapshot->image;
+    keep_stand_ins(image, summary_);
+    return image;
 }
 
 std::vector<std::string> LiveScene::unsaved() const {

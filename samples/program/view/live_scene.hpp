@@ -31,7 +31,7 @@ struct LiveMethod {
     AnyMethod method;
     std::string name;
     Kind kind = Kind::unbiased;
-    std::shared_ptr<const Snapshot> snapshot;  ///< the newest; of the present view, or empty
+    std::shared_ptr<const Snapshot> snapshot;  ///< the newest; see `InteractiveRender`
     std::vector<ErrorPoint> curve;
     std::vector<std::shared_ptr<const Snapshot>> kept;  ///< those of the curve whose error can still be measured
     bool unsaved = false;                               ///< has been worked on for a while, and was not saved since
@@ -103,7 +103,7 @@ public:
     /// Empty before it is known; forgotten when the camera moves.
     std::shared_ptr<const FollowedPath> followed() const { return followed_.result(); }
 
-    /// The image as `render` would save it.
+    /// The image as `render` would save it, with what stood in for what the scene file says.
     Image image_to_save(std::size_t method) const;
     void saved(std::size_t method) { methods_[method].unsaved = false; }
     /// Names of methods with work that would be lost.

@@ -44,7 +44,12 @@ const ImVec4 red{1, 0.45f, 0.4f, 1}, green{0.45f, 0.9f, 0.5f, 1}, yellow{1, 0.85
 
 }  // namespace
 
-void Interface::side_panel(float width, float) {
+/// 0 where it is hidden.
+float Interface::panel_width() const {
+    return shows_panel_ ? std::min(340 * window_.scale(), 0.6f * ImGui::GetIO().DisplaySize.x) : 0;
+}
+
+void Interface::side_panel() {
     if (!live_) return;
     ImGui::TextWrapped("%s, %d x %d; %s scene type, %s", scene_name().c_str(), live_->film().width,
                        live_->film().height, live_->scene_type().c_str(), bytes_text(live_->scene_bytes()).c_str());
@@ -52,7 +57,7 @@ void Interface::side_panel(float width, float) {
     method_table();
     compare_panel();
     verdict_panel();
-    plot_panel(width);
+    plot_panel(ImGui::GetContentRegionAvail().x);
     pixel_panel();
 }
 
@@ -259,8 +264,7 @@ void Interface::path_window() {
     if (!path || path->at.x != picked_->first || path->at.y != picked_->second) return;
     const ImGuiIO& io = ImGui::GetIO();
     const float height = std::min(260 * window_.scale(), io.DisplaySize.y / 2);
-    const float width =
-        io.DisplaySize.x - (shows_panel_ ? std::min(340 * window_.scale(), 0.6f * io.DisplaySize.x) : 0);
+    const float width = io.DisplaySize.x - panel_width();
     ImGui::SetNextWindowPos({0, io.DisplaySize.y - ImGui::GetFrameHeight() - height}, ImGuiCond_Appearing);
     ImGui::SetNextWindowSize({width, height}, ImGuiCond_Appearing);
     bool stays = true;

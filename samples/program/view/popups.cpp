@@ -79,7 +79,7 @@ void Interface::save_popup() {
     if (!saves_) return;
     if (!ImGui::IsPopupOpen("Save")) ImGui::OpenPopup("Save");
     if (!ImGui::BeginPopupModal("Save", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
-    ImGui::TextUnformatted("File: .png as it is shown, .exr, .hdr or .pfm as it is, .html all methods side by side");
+    ImGui::TextUnformatted("File: .png at this exposure, .exr, .hdr or .pfm as it is, .html all methods side by side");
     if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
     ImGui::SetNextItemWidth(480 * window_.scale());
     ImGui::InputText("##name", &save_name_);
@@ -121,8 +121,7 @@ void Interface::save(const std::filesystem::path& file) {
         for (std::size_t i = 0; i < live_->methods().size(); ++i) live_->saved(i);
     } else {
         outputs.add_image("Save", file);
-        Image image = live_->image_to_save(live_->shown());
-        write_image(file, image, {.exposure = display_.stops});
+        write_image(file, live_->image_to_save(live_->shown()), {.exposure = display_.stops});
         live_->saved(live_->shown());
     }
     tell(fmt::format("Wrote {}.", file.string()));
