@@ -150,6 +150,17 @@ def check_methods(program, display, directory, pictures):
     # A file that exists is not proposed again, nor overwritten.
     again = window.save("ctrl+s", ".png")
     check(again != png and os.path.exists(again), "another name is proposed")
+
+    # Keys that fly do not when they were pressed with Control, though that is let go of first.
+    display.do("keydown", "ctrl", "keydown", "s")
+    window.settle()
+    display.do("keyup", "ctrl")
+    window.settle()
+    display.key("Escape")
+    window.settle()
+    display.do("keyup", "s")
+    window.settle()
+    check("4 samples" in display.title(), "saving does not move the camera: " + display.title())
     stats = window.quit()
     check(set(stats["methods"]) == set(METHODS), "the numbers tell of all methods")
     check(all(m["samples_per_pixel"] == 4 for m in stats["methods"].values()), "each of them rested after 4 samples")

@@ -179,8 +179,7 @@ void Interface::handle_keys() {
 /// While W, A, S, D, Q or E are held down.
 void Interface::fly() {
     moves_camera_ = false;
-    if (!live_ || window_.is_down(GLFW_KEY_LEFT_CONTROL) || window_.is_down(GLFW_KEY_RIGHT_CONTROL) || saves_ || opens_)
-        return;
+    if (!live_ || saves_ || opens_ || asks_to_close_) return;
     const auto axis = [&](int positive, int negative) {
         return double(window_.is_down(positive)) - double(window_.is_down(negative));
     };

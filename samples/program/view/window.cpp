@@ -18,8 +18,11 @@ namespace lightswitch::program {
 struct WindowCallbacks {
     static Window& of(GLFWwindow* window) { return *static_cast<Window*>(glfwGetWindowUserPointer(window)); }
     static void key(GLFWwindow* window, int key, int, int action, int modifiers) {
-        of(window).had_input_ = true;
-        if (action != GLFW_RELEASE) of(window).keys_.push_back({key, modifiers, 0});
+        Window& self = of(window);
+        self.had_input_ = true;
+        if (action != GLFW_RELEASE) self.keys_.push_back({key, modifiers, 0});
+        if (action == GLFW_RELEASE) self.combined_.erase(key);
+        else if (modifiers & (GLFW_MOD_CONTROL | GLFW_MOD_ALT)) self.combined_.insert(key);
     }
     static void character(GLFWwindow* window, unsigned code) {
         of(window).keys_.push_back({0, 0, static_cast<char32_t>(code)});
@@ -140,7 +143,9 @@ void Window::set_title(const std::string& title) {
     glfwSetWindowTitle(window_, title.c_str());
 }
 
-bool Window::is_down(int key) const { return !ImGui::GetIO().WantTextInput && glfwGetKey(window_, key) == GLFW_PRESS; }
+bool Window::is_down(int key) const {
+    return !ImGui::GetIO().WantTextInput && !combined_.contains(key) && glfwGetKey(window_, key) == GLFW_PRESS;
+}
 
 void Window::copy(const std::string& text) { glfwSetClipboardString(window_, text.c_str()); }
 

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -39,7 +40,8 @@ public:
     void set_title(const std::string& title);
     /// Pixels of the interface per pixel of a usual screen.
     float scale() const { return scale_; }
-    /// Whether a key is held down that no text field wants.
+    /// Whether a key is held down that no text field wants, and that was not pressed together with Control or Alt: who
+    /// lets go of Control first does not mean the key alone.
     bool is_down(int key) const;
     void copy(const std::string& text);
 
@@ -57,6 +59,7 @@ private:
     std::string title_;
     bool had_input_ = true;
     std::vector<Key> keys_;
+    std::set<int> combined_;  // keys that are down since they were pressed with Control or Alt
     std::vector<std::filesystem::path> dropped_;
 };
 
