@@ -14,8 +14,10 @@ class Display:
     def __init__(self, width=1280, height=800):
         self.directory = tempfile.mkdtemp(prefix="lightswitch-display-")
         reading, writing = os.pipe()
+        # Without -noreset the server begins anew when its last client leaves, such as an xdotool that looks whether the
+        # window is there yet, and turns away a program that comes in that moment.
         self.server = subprocess.Popen(
-            ["Xvfb", "-displayfd", str(writing), "-screen", "0", f"{width}x{height}x24", "-nolisten", "tcp",
+            ["Xvfb", "-displayfd", str(writing), "-screen", "0", f"{width}x{height}x24", "-nolisten", "tcp", "-noreset",
              "-fbdir", self.directory], pass_fds=[writing], stderr=subprocess.DEVNULL)
         os.close(writing)
         with os.fdopen(reading) as numbers:

@@ -64,10 +64,13 @@ class Window:
         self.log = open(os.path.join(directory, "output.txt"), "w+")
         self.process = display.start([program, "view", *arguments, "--stats", self.stats, "--window", "900x600"],
                                      cwd=directory, stdout=self.log, stderr=subprocess.STDOUT)
-        display.wait_for_title(bool)
+        self.wait("")
 
     def wait(self, text, seconds=60):
-        return self.display.wait_for_title(lambda title: text in title, seconds)
+        try:
+            return self.display.wait_for_title(lambda title: text in title, seconds)
+        except AssertionError as error:
+            raise AssertionError(f"{error}, waiting for {text!r}; the program printed: {self.output()}") from None
 
     def settle(self):
         """Until what keys have done can be seen."""
