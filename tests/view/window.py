@@ -1,7 +1,8 @@
 """window.py PROGRAM: uses the window of `lightswitch view` on a display of its own, with keys and mouse.
 
 Exit status: 0 when all holds, 1 when not, 77 when Xvfb or xdotool are missing. With a second argument, a directory, it
-leaves pictures of the screen there. `window.py PROGRAM --picture docs/window.png` makes the picture of the README.
+leaves pictures of the screen there. `window.py PROGRAM --long` tests what takes a minute. `window.py PROGRAM --picture
+docs/window.png` makes the picture of the README.
 """
 
 import json
@@ -14,6 +15,7 @@ import time
 import zlib
 
 from display import Display, color, write_png
+from x11 import X11
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 CBOX = os.path.join(HERE, "..", "data", "cbox", "cbox.xml")
@@ -311,6 +313,8 @@ def check_scenes(program, display, directory, pictures):
     display.key("Return")
     window.wait("cbox.xml: path-nee")
     check(window.process.poll() is None, "the program goes on")
+    drop(display, copy_of_box(directory))
+    window.wait("a copy.xml: path-nee")
     window.quit()
 
     nowhere = dict(os.environ)
@@ -320,6 +324,65 @@ def check_scenes(program, display, directory, pictures):
     check(result.returncode == 2 and "display" in result.stderr, "without a display there is an error: " + result.stderr)
     result = subprocess.run([program, "view", "furnace", "--method", "pth"], env=nowhere, capture_output=True, text=True)
     check(result.returncode == 2 and "path" in result.stderr, "a method that is not there is an error")
+
+
+def copy_of_box(directory):
+    """A scene file with a space in its name; the part of a URI that leads to it."""
+    with open(CBOX) as original, open(os.path.join(directory, "a copy.xml"), "w") as copy:
+        copy.write(original.read().replace("meshes/", os.path.join(os.path.dirname(os.path.abspath(CBOX)), "meshes/")))
+    return os.path.join(directory, "a%20copy.xml")
+
+
+def drop(display, file):
+    x11 = X11(display.environment["DISPLAY"])
+    x11.drop(int(display.do("search", "--name", "^lightswitch")), file)
+    x11.close()
+
+
+def check_dense_screen(program, display, directory, pictures):
+    """Twice as many pixels per inch: all is twice as large, and the mouse is where it points."""
+    x11 = X11(display.environment["DISPLAY"])
+    x11.set_dots_per_inch(192)
+    window = Window(display, program, directory, CBOX, "--size", "60x60", "--spp", "4")
+    window.wait("4 samples")
+    display.do("mousemove", 500, 600)
+    window.settle()
+    display.do("click", 1)
+    window.settle()
+    width, height, rows = display.pixels()
+    x11.close()
+    if pictures:
+        write_png(os.path.join(pictures, "dense-screen.png"), rows, width)
+    check(any(color(rows, x, 1190) != (0, 0, 0) for x in range(1800)), "the window is twice as high")
+    check(all(color(rows, x, 1150) == (0, 0, 0) for x in range(1805, width)), "and twice as wide, not more")
+    bar = next(y for y in range(4, 100) if color(rows, 1700, y) != color(rows, 1700, 4))
+    check(30 <= bar <= 50, f"so is the menu bar: {bar} pixels")
+    marks = [x for x in range(1100) if color(rows, x, 600) in (LINE, (0, 0, 0)) and color(rows, x, 606) in (LINE, (0, 0, 0))]
+    check(any(abs(x - 500) < 22 for x in marks), f"the pixel under the mouse is marked: {marks}")
+    window.quit()
+
+
+def check_unsaved(program, display, directory, pictures):
+    """What took longer than half a minute is not lost unasked. (Long.)"""
+    window = Window(display, program, directory, "furnace", "--size", "32x32")
+    time.sleep(35)
+    drop(display, copy_of_box(directory))
+    window.settle()
+    if pictures:
+        width, height, rows = display.pixels()
+        write_png(os.path.join(pictures, "not-saved.png"), rows[:600], 900)
+    display.key("Escape")
+    time.sleep(2)
+    check("furnace: " in display.title(), "another scene does not take the place of images: " + display.title())
+    display.key("ctrl+q")
+    window.settle()
+    check(window.process.poll() is None, "nor is the window closed")
+    display.key("Escape")
+    window.settle()
+    window.save("ctrl+e", ".exr")
+    drop(display, copy_of_box(directory))
+    window.wait("a copy.xml: ")
+    window.quit()
 
 
 def make_picture(program, display, path):
@@ -353,8 +416,11 @@ def main():
     if missing:
         print("skipped: no", " and no ".join(missing))
         return 77
-    for part in (check_methods, check_views, check_camera, check_scenes):
-        display = Display()
+    parts = (check_methods, check_views, check_camera, check_scenes, check_dense_screen)
+    if pictures == "--long":
+        parts, pictures = (check_unsaved,), None
+    for part in parts:
+        display = Display(2000, 1300)
         try:
             with tempfile.TemporaryDirectory() as directory:
                 part(program, display, directory, pictures)

@@ -158,11 +158,11 @@ void Interface::handle_keys() {
             escaped_ = true;
             shows_help_ = false;
             message_.clear();
-            if (!saves_ && !opens_ && !asks_to_close_) picked_.reset();
+            if (!asks()) picked_.reset();
             continue;
         }
         entered_ = entered_ || key.key == GLFW_KEY_ENTER || key.key == GLFW_KEY_KP_ENTER;
-        if (ImGui::GetIO().WantTextInput || saves_ || opens_ || asks_to_close_) continue;
+        if (ImGui::GetIO().WantTextInput || asks()) continue;
         const int relevant = GLFW_MOD_SHIFT | GLFW_MOD_CONTROL | GLFW_MOD_ALT;
         for (const Command& command : commands_) {
             if (command.key != key.key || command.modifiers != (key.modifiers & relevant)) continue;
@@ -179,7 +179,7 @@ void Interface::handle_keys() {
 /// While W, A, S, D, Q or E are held down.
 void Interface::fly() {
     moves_camera_ = false;
-    if (!live_ || saves_ || opens_ || asks_to_close_) return;
+    if (!live_ || asks()) return;
     const auto axis = [&](int positive, int negative) {
         return double(window_.is_down(positive)) - double(window_.is_down(negative));
     };

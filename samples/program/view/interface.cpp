@@ -67,8 +67,7 @@ bool Interface::is_waited_for() const {
 }
 
 void Interface::close() {
-    if (live_ && !live_->unsaved().empty()) asks_to_close_ = true;
-    else closes_ = true;
+    unless_lost("Close", [this] { closes_ = true; });
 }
 
 void Interface::frame() {

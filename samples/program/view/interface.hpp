@@ -7,6 +7,7 @@
 #include "window.hpp"
 
 #include <array>
+#include <functional>
 #include <future>
 #include <memory>
 #include <optional>
@@ -78,7 +79,7 @@ private:
     void save_popup();
     void open_popup();
     void message_popup();
-    void close_popup();
+    void loss_popup();
 
     // image_area.cpp
     void image_area(float width, float height);
@@ -108,6 +109,11 @@ private:
     void begin_save(const std::string& ending);
     void save(const std::filesystem::path& file);
     void open(const std::string& scene);
+    void begin_to_open(const std::string& scene);
+    /// Does it, but asks first if something would be lost.
+    void unless_lost(const char* what, std::function<void()> act);
+    /// Whether something is over the window that keys belong to.
+    bool asks() const { return saves_ || opens_ || would_lose_; }
     void pick(int x, int y);
     void follow(std::int64_t iteration);
     void follow_brightest();
@@ -120,7 +126,7 @@ private:
     ViewOptions options_;
     std::unique_ptr<LiveScene> live_;
     std::vector<Command> commands_;
-    bool closes_ = false, shows_panel_ = true, shows_help_ = false, asks_to_close_ = false;
+    bool closes_ = false, shows_panel_ = true, shows_help_ = false;
     bool escaped_ = false, entered_ = false;  // the keys, since the last frame
 
     View view_ = View::image;
@@ -145,6 +151,8 @@ private:
     std::chrono::steady_clock::time_point told_{};
     std::string message_, save_name_, save_problem_, open_name_;
     bool saves_ = false, opens_ = false;
+    std::function<void()> would_lose_;  // what is asked about
+    const char* lost_by_ = "";
     std::future<LoadedScene> loading_;
     std::string loading_name_;
     double frames_per_second_ = 0;

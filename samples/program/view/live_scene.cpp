@@ -213,7 +213,7 @@ void LiveScene::update() {
         for (LiveMethod& method : methods_) {
             method.curve.clear();
             method.kept.clear();
-            method.unsaved = false;
+            method.unsaved_seconds = method.saved_seconds = 0;
         }
         measured_with_ = 0;
         verdict_.stop();
@@ -233,7 +233,7 @@ void LiveScene::take(LiveMethod& method, std::shared_ptr<const Snapshot> snapsho
     if (!method.snapshot) return;
     const Snapshot& now = *method.snapshot;
     if (now.iterations == 0 || now.view != view_) return;
-    if (now.statistics.seconds > worth_saving) method.unsaved = true;
+    method.unsaved_seconds = now.statistics.seconds - method.saved_seconds;
     auto& curve = method.curve;
     if (curve.empty() || now.statistics.seconds > 1.1 * curve.back().seconds) {
         curve.push_back({.seconds = now.statistics.seconds, .samples = now.iterations, .estimated = now.error});
@@ -337,10 +337,14 @@ Image LiveScene::image_to_save(std::size_t method) const {
     return image;
 }
 
+void LiveScene::saved(std::size_t method) {
+    methods_[method].saved_seconds += std::exchange(methods_[method].unsaved_seconds, 0);
+}
+
 std::vector<std::string> LiveScene::unsaved() const {
     std::vector<std::string> names;
     for (const LiveMethod& method : methods_)
-        if (method.unsaved) names.push_back(method.name);
+        if (method.unsaved_seconds > worth_saving) names.push_back(method.name);
     return names;
 }
 

@@ -34,7 +34,8 @@ struct LiveMethod {
     std::shared_ptr<const Snapshot> snapshot;  ///< the newest; see `InteractiveRender`
     std::vector<ErrorPoint> curve;
     std::vector<std::shared_ptr<const Snapshot>> kept;  ///< those of the curve whose error can still be measured
-    bool unsaved = false;                               ///< has been worked on for a while, and was not saved since
+    double unsaved_seconds = 0;                         ///< of work on this view that no saved file holds
+    double saved_seconds = 0;                           ///< of work that one does
 };
 
 /// The words and numbers of a verdict while it is being found.
@@ -105,7 +106,7 @@ public:
 
     /// The image as `render` would save it, with what stood in for what the scene file says.
     Image image_to_save(std::size_t method) const;
-    void saved(std::size_t method) { methods_[method].unsaved = false; }
+    void saved(std::size_t method);
     /// Names of methods with work that would be lost.
     std::vector<std::string> unsaved() const;
 

@@ -13,6 +13,7 @@
 #include <imgui_stdlib.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace lightswitch::program {
 
@@ -20,7 +21,7 @@ void Interface::popups() {
     help();
     save_popup();
     open_popup();
-    close_popup();
+    loss_popup();
     message_popup();
 }
 
@@ -160,6 +161,10 @@ void Interface::open_popup() {
 
 void Interface::open(const std::string& scene) {
     if (loading_.valid()) return tell(fmt::format("{} is still being opened.", loading_name_));
+    unless_lost("Open another scene", [this, scene] { begin_to_open(scene); });
+}
+
+void Interface::begin_to_open(const std::string& scene) {
     SceneOptions wanted = options_.scene;
     wanted.scene = scene;
     // What was given for the first scene's file is not for this one.
@@ -198,22 +203,26 @@ void Interface::message_popup() {
     ImGui::End();
 }
 
-void Interface::close_popup() {
-    if (!asks_to_close_) return;
-    if (!ImGui::IsPopupOpen("Close")) ImGui::OpenPopup("Close");
-    if (!ImGui::BeginPopupModal("Close", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
+void Interface::unless_lost(const char* what, std::function<void()> act) {
+    if (!live_ || live_->unsaved().empty()) return act();
+    lost_by_ = what;
+    would_lose_ = std::move(act);
+}
+
+void Interface::loss_popup() {
+    if (!would_lose_) return;
+    if (!ImGui::IsPopupOpen("Not saved")) ImGui::OpenPopup("Not saved");
+    if (!ImGui::BeginPopupModal("Not saved", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
     ImGui::TextUnformatted("Images that took a while are not saved:");
     for (const std::string& method : live_->unsaved()) ImGui::BulletText("%s", method.c_str());
-    if (ImGui::Button("Close without saving")) {
-        closes_ = true;
-        ImGui::CloseCurrentPopup();
-    }
+    const bool wanted = ImGui::Button(fmt::format("{} without saving", lost_by_).c_str());
     ImGui::SameLine();
-    if (ImGui::Button("Go on") || escaped_) {
-        asks_to_close_ = false;
-        ImGui::CloseCurrentPopup();
-    }
+    const bool done = ImGui::Button("Stay here") || escaped_;
+    if (wanted || done) ImGui::CloseCurrentPopup();
     ImGui::EndPopup();
+    if (!wanted && !done) return;
+    const auto act = std::exchange(would_lose_, {});
+    if (wanted) act();
 }
 
 }  // namespace lightswitch::program
