@@ -262,3 +262,22 @@ TEST_CASE("a luminous rectangle and a luminous sphere irradiate a plane as the f
     const Image image = render(lit, PathTracerNee{.max_depth = 2}, {.samples = 16384});
     CHECK(image(3, 3).y == relative(expected_flat, 1e-3));
 }
+
+TEST_CASE("furnace: roulette leaves the variance of long paths finite") {
+    // A closed box shows 1 when its walls shine with what they do not reflect. Half of the light has bounced more than
+    // 69 times. Were paths ended with 5 % at least, the estimated variance would grow with the number of samples.
+    constexpr float albedo = 0.99f;
+    LibraryDescription description;
+    description.add(cube().flipped(), description.add(Lambert{Rgb(albedo)}), Rgb(1 - albedo));
+    description.camera.to_world = CameraDescription::look_at({0, 0, 0.5}, {0, 0, 0}, {0, 1, 0});
+    description.film.width = description.film.height = 8;
+    const auto scene = build_as<DiffuseScene>(description);
+    Session<DiffuseScene, PathTracer> session(scene, PathTracer{}, {.seed = 3, .sampling = Sampling::independent});
+    session.run({.samples = 256});
+    const double mean = session.film().image().mean().y;
+    double variance = 0;
+    for (const Rgb& pixel : session.film().variance().pixels()) variance += double(pixel.y) / (64 * 64);
+    // By chance once in 10^6. The lengths of paths have an exponential distribution, whose mean is its deviation.
+    CHECK(std::abs(mean - 1) < 5 * std::sqrt(variance));
+    CHECK(variance < 2.0 / (64 * 256));
+}

@@ -13,9 +13,13 @@ struct PathLength {
 };
 
 /// The probability with which a path of that throughput goes on once roulette has begun; see `survives_roulette`.
+///
+/// It is at most 0.999 so that paths between surfaces that absorb nothing end at all. A lower limit q would give paths
+/// between surfaces of an albedo a > q weights that grow by a / q at every bounce: their variance is that of a sum of
+/// (a^2 / q)^n over the bounces n, and infinite from a = sqrt(q) on.
 inline float survival_probability(float largest, float eta) {
-    // In this order a NaN gives 0.95: such a path goes on until it is counted where its radiance arrives.
-    return std::min(0.95f, largest * eta * eta);
+    // In this order a NaN gives 0.999: such a path goes on until it is counted where its radiance arrives.
+    return std::min(0.999f, largest * eta * eta);
 }
 
 /// Russian roulette after `bounces` bounces (counted from 1): false ends the path; otherwise `throughput` is divided by
