@@ -149,9 +149,9 @@ TEST_CASE("limits: a near plane beyond the scene leaves nothing to see, and noth
 
 TEST_CASE("limits: shapes that are too small beside the scene are refused, shining or not") {
     for (const std::optional<Rgb> emission : {std::optional<Rgb>(), std::optional(Rgb(1e6f))}) {
-        // Render space holds the scene between -1 and 1; it is 6 units long.
-        CHECK(refusal(small_ball(1.01 * 0x1p-48, emission)).empty());
-        CHECK(refusal(small_ball(0.99 * 0x1p-48, emission)) ==
+        // Render space holds the scene between -1 and 1; its middle is the ball, from which it is 5 units long.
+        CHECK(refusal(small_ball(1.01 * 0x1p-47, emission)).empty());
+        CHECK(refusal(small_ball(0.99 * 0x1p-47, emission)) ==
               "far.xml:5: <emitter>: the sphere is too small to be seen beside the rest of the scene");
         CHECK(refusal(small_ball(1e-30, emission)) ==
               "far.xml:5: <emitter>: the sphere is too small to be seen beside the rest of the scene");
@@ -201,4 +201,34 @@ TEST_CASE("limits: a point light may be as far away as single precision can squa
     CHECK(light(0.99e18).empty());
     for (const double distance : {1.01e18, 1e20, 1e40})
         CHECK(light(distance).starts_with("far.xml:5: <emitter>: the light is too far away"));
+}
+
+TEST_CASE("limits: a floor keeps its form under a sun at its true distance") {
+    // In its radii the floor lies 2e-8 apart from the middle of the scene, less than single precision can tell.
+    GreyDescription description = grey_description();
+    const std::size_t black = description.add(Lambert{Rgb(0)});
+    description.add(quad({-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}), 0);
+    const DVec3 sun(0, 1e8, 3e7);
+    const double radius = 4.65e5, distance = glm::length(sun);
+    description.add(Sphere{sun, radius, false}, black, Rgb(46000));
+    description.camera.to_world = CameraDescription::look_at({0, 2, 1}, DVec3(0), {0, 1, 0});
+    description.camera.fov = 20;
+    const GreyScene scene = build_grey(description);
+    const Image image = render(scene, PathTracerNee{}, {.samples = 16}, {.threads = 1});
+    const double expected = 0.5 * 46000 * std::pow(radius / distance, 2) * sun.y / distance;
+    for (const Rgb& pixel : image.pixels()) CHECK(std::abs(pixel.x / expected - 1) < 1e-3);
+}
+
+TEST_CASE("limits: light that single precision would lose is refused, unless there is brighter light") {
+    const auto light = [](float radiance, float other) {
+        return refusal([=](GreyDescription& s, double) {
+            s.sources.clear();
+            s.add(Source(EnvironmentSource{Rgb(radiance)}), a_light);
+            if (other > 0) s.add(Source(DirectionalSource{.irradiance = Rgb(other)}), a_light);
+        });
+    };
+    CHECK(light(1.01e-30f, 0).empty());
+    CHECK(light(0.99e-30f, 0).starts_with("scene: the brightest light is below 1e-30"));
+    CHECK(light(1e-37f, 1e-35f).starts_with("scene: the brightest light is below 1e-30"));
+    CHECK(light(1e-37f, 1).empty());
 }

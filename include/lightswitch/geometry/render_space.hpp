@@ -13,9 +13,11 @@ namespace lightswitch {
 class RenderSpace {
 public:
     RenderSpace() = default;
-    /// For geometry between the corners `lower` and `upper` (scene units).
-    RenderSpace(const DVec3& lower, const DVec3& upper) : center_(lower + (upper - lower) * 0.5) {
-        const DVec3 half = (upper - lower) * 0.5;
+    /// For geometry between the corners `lower` and `upper` (scene units), around their middle.
+    RenderSpace(const DVec3& lower, const DVec3& upper) : RenderSpace(lower, upper, lower + (upper - lower) * 0.5) {}
+    /// The same around another point between them: floats are densest there.
+    RenderSpace(const DVec3& lower, const DVec3& upper, const DVec3& center) : center_(center) {
+        const DVec3 half = glm::max(upper - center, center - lower);
         const double extent = std::max(half.x, std::max(half.y, half.z));
         int exponent = 0;
         if (extent > 0) std::frexp(extent, &exponent);

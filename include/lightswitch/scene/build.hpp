@@ -39,10 +39,11 @@ public:
     BuiltScene build(const SceneDescription<Material>& description) {
         const auto start = std::chrono::steady_clock::now();
         check(description);
-        const Bounds bounds = find_bounds(description);
+        const std::vector<Bounds> parts = bounds_of_parts(description);
+        const Bounds bounds = bounds_around(parts, description.camera);
         data_.name = description.name;
-        data_.space = RenderSpace(bounds.lower, bounds.upper);
-        data_.radius = glm::length(data_.space.point(bounds.upper));
+        data_.space = choose_render_space(parts, bounds);
+        data_.radius = bounds.radius(data_.space);
         const detail::MaterialAssembly<typename BuiltScene::Data> materials(description, data_);
         materials_ = materials.indices();
         for (const auto& source : description.sources) add(source.source, source.origin);
@@ -50,6 +51,7 @@ public:
         for (const auto& shape : description.shapes) add(shape);
         for (const auto& instance : description.instances) add_lights(description.groups[instance.group], instance);
         detail::choose_lights(data_, pending_);
+        detail::refuse_dim(data_.emitters, data_.name);
         embree::Accelerator accelerator = end_group(in_place);
         auto& statistics = data_.statistics;
         detail::Placement placement = description.instances.empty()
@@ -71,7 +73,7 @@ private:
     /// Shapes that are added from now on belong to a group in that space.
     detail::GroupRecord begin_group(const RenderSpace& space, const Bounds& bounds) {
         space_ = space;
-        radius_ = glm::length(space.point(bounds.upper));
+        radius_ = bounds.radius(space);
         spheres_.clear();
         accelerator_.emplace(device_);
         return {.first_mesh = static_cast<std::uint32_t>(data_.meshes.size()),

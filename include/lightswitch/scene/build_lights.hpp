@@ -4,7 +4,9 @@
 
 #include <lightswitch/scene/scene_data.hpp>
 
+#include <algorithm>
 #include <numeric>
+#include <string>
 
 namespace lightswitch::detail {
 
@@ -40,6 +42,17 @@ void choose_lights(SceneData<BsdfList, Lights<L...>>& data, const std::vector<Pe
             if (power > 0) weights[light] = powers[light] * (1 / total + 1 / (power * double(pending.size())));
     }
     data.light_choice = DiscreteDistribution(weights);
+}
+
+/// Refuses light of which products would be lost in single precision, unless that is much less than there is besides.
+/// Of points it is compared in render space, where their intensity is about what they do to surfaces.
+inline void refuse_dim(const std::vector<Emitter>& emitters, const std::string& scene) {
+    float most = 0;
+    for (const Emitter& emitter : emitters) most = std::max(most, max_component(emitter.strength));
+    if (most > 0 && most < 1e-30f)
+        throw Error(scene +
+                    ": the brightest light is below 1e-30, where single precision ends: multiply all lights by " +
+                    "the same power of two");
 }
 
 }  // namespace lightswitch::detail

@@ -208,18 +208,64 @@ struct Bounds {
                                               corner & 2 ? other.lower.y : other.upper.y,
                                               corner & 4 ? other.lower.z : other.upper.z, 1)));
     }
+    /// Of the sphere around the origin of render space that holds the box.
+    double radius(const RenderSpace& space) const {
+        return glm::length(glm::max(glm::abs(space.point(lower)), glm::abs(space.point(upper))));
+    }
 };
 
+/// The boxes around all shapes and instances, in scene units.
 template <class Material>
-Bounds find_bounds(const SceneDescription<Material>& scene) {
-    Bounds bounds;
-    for (const auto& shape : scene.shapes) bounds.include(shape.geometry);
+std::vector<Bounds> bounds_of_parts(const SceneDescription<Material>& scene) {
+    std::vector<Bounds> parts;
+    parts.reserve(scene.shapes.size() + scene.instances.size());
+    for (const auto& shape : scene.shapes) parts.emplace_back().include(shape.geometry);
     std::vector<Bounds> of_groups(scene.groups.size());
     for (std::size_t i = 0; i < of_groups.size(); ++i)
         for (const auto& shape : scene.groups[i].shapes) of_groups[i].include(shape.geometry);
-    for (const auto& instance : scene.instances) bounds.include(of_groups[instance.group], instance.to_world);
-    if (scene.shapes.empty() && scene.instances.empty()) bounds.include(DVec3(scene.camera.to_world[3]));
+    for (const auto& instance : scene.instances)
+        parts.emplace_back().include(of_groups[instance.group], instance.to_world);
+    return parts;
+}
+
+/// The box around all of them; of a scene without any, around the camera's place.
+inline Bounds bounds_around(const std::vector<Bounds>& parts, const CameraDescription& camera) {
+    Bounds bounds;
+    for (const Bounds& part : parts) bounds = {glm::min(bounds.lower, part.lower), glm::max(bounds.upper, part.upper)};
+    if (parts.empty()) bounds.include(DVec3(camera.to_world[3]));
     return bounds;
+}
+
+template <class Material>
+Bounds find_bounds(const SceneDescription<Material>& scene) {
+    return bounds_around(bounds_of_parts(scene), scene.camera);
+}
+
+/// Render space for parts within `bounds`. Its middle is that of the bounds; but where that is so far from some part
+/// that rounding would spoil its form, such as of a room under a sun at its true distance, it is that of the part that
+/// would suffer most, if that helps.
+inline RenderSpace choose_render_space(const std::vector<Bounds>& parts, const Bounds& bounds) {
+    // Where the part lies, in its own sizes: how many of them are lost for every digit of its form.
+    const auto distance_in_sizes = [](const Bounds& part, const DVec3& center) {
+        const DVec3 far = glm::max(glm::abs(part.lower - center), glm::abs(part.upper - center));
+        const DVec3 size = part.upper - part.lower;
+        return std::max({far.x, far.y, far.z}) / std::max({size.x, size.y, size.z});
+    };
+    const auto farthest = [&](const DVec3& center) {
+        std::pair<double, const Bounds*> most{0, nullptr};
+        for (const Bounds& part : parts)
+            if (const double distance = distance_in_sizes(part, center);
+                std::isfinite(distance) && distance > most.first)
+                most = {distance, &part};
+        return most;
+    };
+    const RenderSpace usual(bounds.lower, bounds.upper);
+    const auto [distance, part] = farthest(usual.center());
+    constexpr double tolerable = 0x1p18;  // a float has 2^24 steps
+    if (distance <= tolerable) return usual;
+    const DVec3 center = part->lower + (part->upper - part->lower) * 0.5;
+    if (farthest(center).first >= distance) return usual;
+    return {bounds.lower, bounds.upper, center};
 }
 
 }  // namespace lightswitch::detail
