@@ -270,3 +270,43 @@ TEST_CASE("offset: a tiny object on a large plane keeps its contact with it") {
         CHECK(covered == rays);
     }
 }
+
+TEST_CASE("offset: rays leave planes that are level, or nearly so, without touching them") {
+    // The bound on the intersection test is nearly nothing for these: what it rests on is that the terms which are not
+    // there cannot be rounded.
+    Random random(7);
+    std::int64_t rays = 0, again = 0;
+    for (int trial = 0; trial < 400; ++trial) {
+        const double tilt = trial % 4 == 0 ? 0 : std::pow(10, -9 * double(random.next()));
+        const double phi = two_pi * double(random.next()), size = std::pow(10, -4 * double(random.next()));
+        const DVec3 normal(std::sin(tilt) * std::cos(phi), std::cos(tilt), std::sin(tilt) * std::sin(phi));
+        const DVec3 x = glm::normalize(DVec3(normal.y, -normal.x, 0)), z = glm::cross(x, normal);
+        const DVec3 center =
+            trial % 3 == 0 ? DVec3(0) : (1 - size) * (2.0 * DVec3(random.next(), random.next(), random.next()) - 1.0);
+        GreyDescription description = grey_description();
+        stretch_to_unit_box(description);
+        const DVec3 a = size * x, b = size * (0.1 + double(random.next())) * z;
+        description.add(quad(center - a + b, center + a + b, center + a - b, center - a - b), 0);
+        const GreyScene scene = build_scene<Bsdfs<Lambert>, AllLights>(
+            description, {.embree_config = "threads=1", .robust = trial % 2 == 0});
+        for (int i = 0; i < 1000; ++i) {
+            const auto side = [&] { return 1.9 * double(random.next()) - 0.95; };
+            const DVec3 target = center + side() * a + side() * b;
+            const Vec3 up = lightswitch::normalize(Vec3(side(), 0.01 + double(random.next()), side()));
+            const double away = size * std::pow(10, -3 * double(random.next()));
+            const Vec3 from(scene.space().point(target + away * DVec3(up))), to(scene.space().point(target));
+            const auto hit = scene.intersect(Ray{.origin = from, .direction = lightswitch::normalize(to - from)});
+            if (!hit || hit->distance > 2 * away) continue;
+            const Basis basis(hit->normal);
+            Vec3 local = cosine_hemisphere(random.next_2d());
+            if (i % 2 == 0) local.z *= float(std::pow(10, -5 * double(random.next())));  // grazing
+            const Vec3 out = lightswitch::normalize(basis.to_world(local));
+            if (!(dot(out, hit->normal) > 0)) continue;
+            ++rays;
+            const auto next = scene.intersect(hit->spawn(out));
+            again += next && next->distance < 1e-3 * size;
+        }
+    }
+    CHECK(rays > 300000);
+    CHECK(again == 0);
+}

@@ -12,12 +12,20 @@ inline constexpr double smallest_shape = 0x1p-50;
 
 /// Bound on how far from a triangle's plane Embree may see it, for a ray that starts on the plane: the rounding of
 /// the dot product of the normal with the edge from a corner to the origin. It grows with the size of the triangle,
-/// and with how thin it is, because then the normal itself is a difference of large numbers.
+/// and with how thin it is, because then the normal itself is a difference of large numbers. Term by term it vanishes
+/// along the axes in which the triangle does not extend: floors that lie level have next to none, however large.
 inline float intersection_error(const DVec3& a, const DVec3& b, const DVec3& c, double twice_area) {
-    const double edge1 = glm::length(b - a), edge2 = glm::length(c - a);
-    const double longest = std::max(edge1, std::max(edge2, glm::length(c - b)));
+    const DVec3 e1 = b - a, e2 = c - a, e3 = c - b;
+    const double edge1 = glm::length(e1), edge2 = glm::length(e2);
+    const double longest = std::max(edge1, std::max(edge2, glm::length(e3)));
     const double thinness = std::min(edge1 * edge2 / twice_area, 16.0);
-    return static_cast<float>(double(gamma_bound(4)) * longest * thinness);
+    // The products whose differences are the normal, and the largest factors that they meet.
+    const DVec3 p = glm::abs(e1), q = glm::abs(e2), extent = glm::max(glm::max(p, q), glm::abs(e3));
+    const DVec3 products(p.y * q.z + p.z * q.y, p.z * q.x + p.x * q.z, p.x * q.y + p.y * q.x);
+    const double by_terms = 2 * glm::dot(products, extent) / twice_area;
+    // Not 0, as Embree's watertight test also finds what is at the very beginning of a ray.
+    return static_cast<float>(double(gamma_bound(4)) *
+                              std::max(std::min(longest * thinness, by_terms), 1e-6 * longest));
 }
 
 /// The length of a triangle over its height. Beyond `needle_slenderness` Embree's fast test is too inexact to bound: of
