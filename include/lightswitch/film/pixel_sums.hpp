@@ -20,8 +20,8 @@ namespace lightswitch {
 /// Summation", 2015, with two bins, and integers for bins.)
 ///
 /// Let u(w) = 2^(32 w). The window w of a sum is the least for which all magnitudes are below u(w) 2^31, or
-/// `lowest_window`. `coarse` is the sum of the terms rounded to multiples of u(w), in that unit, and `fine` that of what
-/// rounding to multiples of u(w - 1) gives beyond, in that one; together they are the sum of the terms rounded to
+/// `lowest_window`. `coarse` is the sum of the terms rounded to multiples of u(w), in that unit, and `fine` that of
+/// what rounding to multiples of u(w - 1) gives beyond, in that one; together they are the sum of the terms rounded to
 /// u(w - 1). As one magnitude is at least u(w) / 2, each term errs by at most 2^-32 of the largest, to both sides
 /// alike. When w grows by one, `coarse` becomes `fine`, and all that there is would be rounded to 0 in the new unit.
 ///

@@ -16,8 +16,8 @@
 
 namespace lightswitch::detail {
 
-/// A checksum of 64-bit words. Every step is a bijection of the sum and of the word, so that a change within one word is
-/// always found; another damage is not with a probability of 2^-64.
+/// A checksum of 64-bit words. Every step is a bijection of the sum and of the word, so that a change within one word
+/// is always found; another damage is not with a probability of 2^-64.
 class Checksum {
 public:
     void mix(std::uint64_t word) { sum_ = mix64(sum_ * 0x9e3779b97f4a7c15u + word); }
