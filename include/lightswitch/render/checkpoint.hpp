@@ -2,11 +2,14 @@
 
 // Renders that survive: a session is written to a file, and another one goes on from there.
 
+#include <lightswitch/embree/api.hpp>
 #include <lightswitch/render/render.hpp>
 #include <lightswitch/render/render_state.hpp>
 #include <lightswitch/version.hpp>
 
+#include <algorithm>
 #include <concepts>
+#include <cstdio>
 #include <filesystem>
 #include <string>
 #include <string_view>
