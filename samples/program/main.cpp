@@ -28,7 +28,7 @@
 namespace lightswitch::program {
 namespace {
 
-constexpr std::array<std::string_view, 8> commands{"render",     "view",   "compare", "verify",
+constexpr std::array<std::string_view, 9> commands{"render",     "view",   "merge",   "compare", "verify",
                                                    "strategies", "replay", "methods", "info"};
 /// CLI11's help, with a usage line that shows what must be given.
 class Help : public CLI::Formatter {
@@ -37,6 +37,7 @@ public:
         const std::string command = app->get_name();
         if (command == "render") return usage("render SCENE --output FILE [OPTIONS]");
         if (command == "view") return usage("view [SCENE] [OPTIONS]");
+        if (command == "merge") return usage("merge STATE ... [--output FILE] [--checkpoint FILE.lsw]");
         if (command == "compare") return usage("compare A B ... [OPTIONS]");
         if (command == "verify")
             return usage(
@@ -112,6 +113,7 @@ int run_command(int argc, char** argv) {
 
     RenderOptions render_options;
     ViewOptions view_options;
+    MergeOptions merge_options;
     CompareOptions compare_options;
     VerifyCommand verify_options;
     StrategiesCommand strategies_options;
@@ -119,6 +121,7 @@ int run_command(int argc, char** argv) {
     SceneOptions info_options;
     CLI::App& render_command = *app.add_subcommand("render", "Render a scene to image files");
     CLI::App& view_command = *app.add_subcommand("view", "Open a window in which methods are switched live");
+    CLI::App& merge_command = *app.add_subcommand("merge", "Join what several renders have made of one image");
     CLI::App& compare_command = *app.add_subcommand("compare", "Measure and show how images differ");
     CLI::App& verify_command = *app.add_subcommand("verify", "Tell whether methods have the same expected image");
     CLI::App& strategies_command =
@@ -128,6 +131,7 @@ int run_command(int argc, char** argv) {
     CLI::App& info_command = *app.add_subcommand("info", "Tell what a scene requires");
     add_render(render_command, render_options);
     add_view(view_command, view_options);
+    add_merge(merge_command, merge_options);
     add_compare(compare_command, compare_options);
     add_verify(verify_command, verify_options);
     add_strategies(strategies_command, strategies_options);
@@ -164,6 +168,7 @@ int run_command(int argc, char** argv) {
     refuse_leftovers(command);
     if (&command == &methods_command) return list_methods();
     if (&command == &view_command) return view(view_options);
+    if (&command == &merge_command) return merge(merge_options);
     if (&command == &compare_command) return compare(compare_options);
     if (&command == &verify_command) return verify(verify_options);
     const SceneOptions& scene = &command == &info_command         ? info_options

@@ -13,16 +13,6 @@
 namespace lightswitch::program {
 namespace {
 
-void add_outputs(CLI::App& app, std::vector<std::filesystem::path>& outputs, const std::string& help) {
-    add_values(
-        app, "-o,--output", "FILE",
-        [&](const std::string& text) {
-            if (text.empty()) throw Error("--output: the name is empty");
-            outputs.emplace_back(text);
-        },
-        help);
-}
-
 Size parse_size(std::string_view option, std::string_view text) {
     const std::size_t x = text.find('x');
     long long width = 0, height = 0;
@@ -82,6 +72,16 @@ int parse_max_depth(std::string_view text) {
 }
 
 }  // namespace
+
+void add_outputs(CLI::App& app, std::vector<std::filesystem::path>& outputs, const std::string& help) {
+    add_values(
+        app, "-o,--output", "FILE",
+        [&](const std::string& text) {
+            if (text.empty()) throw Error("--output: the name is empty");
+            outputs.emplace_back(text);
+        },
+        help);
+}
 
 void add_scene_options(CLI::App& app, SceneOptions& options) {
     app.add_option("SCENE", options.scene,
@@ -171,6 +171,7 @@ void add_render(CLI::App& app, RenderOptions& options) {
         "what the scene\nasks for, or auto)");
     add_name(app, "--stats", "FILE.json", options.stats, "write the render's numbers as JSON; - is standard output");
     app.add_flag("-q,--quiet", options.quiet, "no progress, no notices on scene and mesh files, no summary");
+    add_long_options(app, options);
     add_method_options(app, options.of_method);
     app.footer(
         "Of --spp, --seconds and --error the limit that is met first ends the render. Ctrl-C, SIGTERM and SIGHUP end\n"
@@ -186,7 +187,8 @@ void add_render(CLI::App& app, RenderOptions& options) {
         "  lightswitch render room.xml --method path --spp 256 --output room.exr --output room.png\n"
         "  lightswitch render room.xml --error 0.02 --seconds 60 --size 640x360 --output room.png\n"
         "  lightswitch render cornell-spheres --method photon --radius 3 --photon-paths 2 --output caustic.png\n"
-        "  lightswitch render cornell-box --spp 16 --stats - --quiet\n\n"
+        "  lightswitch render cornell-box --spp 16 --stats - --quiet\n"
+        "  lightswitch render room.xml --spp 100000 --checkpoint room.lsw --write-every 60 --output room.exr\n\n"
         "Keys of --stats: method, kind, scene, scene_type, width, height, samples_per_pixel, seconds (rendering\n"
         "only), rays, shadow_rays, rays_per_second, samples_per_second, threads, seed, sampler, max_depth,\n"
         "rr_depth, stand_ins, mean, estimated_error, non_finite, first_non_finite, splats, paths, triangles, spheres, "

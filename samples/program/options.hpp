@@ -12,10 +12,17 @@ namespace lightswitch::program {
 void add_scene_options(CLI::App& app, SceneOptions& options);
 void add_render(CLI::App& app, RenderOptions& options);
 void add_view(CLI::App& app, ViewOptions& options);
+void add_merge(CLI::App& app, MergeOptions& options);
 void add_compare(CLI::App& app, CompareOptions& options);
 void add_verify(CLI::App& app, VerifyCommand& command);
 void add_strategies(CLI::App& app, StrategiesCommand& command);
 void add_replay(CLI::App& app, ReplayCommand& command);
+
+/// The options of renders that survive, may take long and run on several machines.
+void add_long_options(CLI::App& app, RenderOptions& options);
+
+/// `--output`, as images that are written. What is common to several commands.
+void add_outputs(CLI::App& app, std::vector<std::filesystem::path>& outputs, const std::string& help);
 
 /// How long paths become, and which random numbers they take: as `render` has it.
 void add_path_options(CLI::App& app, std::optional<int>& max_depth, std::optional<int>& rr_depth, Sampling& sampling);

@@ -48,6 +48,11 @@ struct MethodOptions {
     std::optional<bool> refine;
 };
 
+/// The number-th of so many shares of a render's iterations; from 1.
+struct Share {
+    int number = 1, of = 1;
+};
+
 struct RenderOptions {
     SceneOptions scene;
     std::string method = "path-nee";
@@ -60,8 +65,19 @@ struct RenderOptions {
     std::uint64_t seed = 0;
     int threads = 0;
     Sampling sampling = Sampling::sobol;
-    std::optional<float> exposure;  ///< stops; nothing: what the scene says, or chosen by the image
-    bool auto_exposure = false;     ///< by the image, whatever the scene says
+    std::optional<float> exposure;     ///< stops; nothing: what the scene says, or chosen by the image
+    bool auto_exposure = false;        ///< by the image, whatever the scene says
+    std::filesystem::path checkpoint;  ///< from which the render goes on, and to which it is written; may be empty
+    double every = 60;                 ///< seconds between two writings of it
+    double write_every = 0;            ///< seconds between two writings of the images; 0: at the end alone
+    std::optional<Share> share;
+    bool quiet = false;
+};
+
+struct MergeOptions {
+    std::vector<std::filesystem::path> states, outputs;
+    std::filesystem::path checkpoint;  ///< may be empty
+    std::optional<float> exposure;     ///< stops; nothing: chosen by the image
     bool quiet = false;
 };
 
@@ -135,6 +151,7 @@ struct ReplayCommand {
 
 // Each runs one sub-command and returns the program's exit status. They throw `Error` for what the user can mend.
 int render(const RenderOptions& options);
+int merge(const MergeOptions& options);
 int compare(const CompareOptions& options);
 int verify(const VerifyCommand& command);
 int strategies(const StrategiesCommand& command);

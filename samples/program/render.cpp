@@ -1,4 +1,5 @@
 #include "cancellation.hpp"
+#include "keeping.hpp"
 #include "load.hpp"
 #include "messages.hpp"
 #include "method_notes.hpp"
@@ -18,11 +19,14 @@ namespace lightswitch::program {
 namespace {
 
 Outputs checked_outputs(const RenderOptions& options) {
-    if (options.outputs.empty() && options.stats.empty())
+    if (options.outputs.empty() && options.stats.empty() && options.checkpoint.empty())
         throw Error("nothing would be kept: name a file with --output (.png, .exr, .hdr or .pfm)");
+    if (options.write_every > 0 && options.outputs.empty())
+        throw Error("--write-every: there is no image to write: name one with --output");
     Outputs outputs;
     for (const auto& output : options.outputs) outputs.add_image("--output", output);
     outputs.add_text("--stats", options.stats);
+    outputs.add_file("--checkpoint", options.checkpoint);
     if (!options.extra.empty() && std::none_of(options.outputs.begin(), options.outputs.end(), can_hold_layers))
         throw Error("--aov: only .exr files hold layers: name one with --output");
     return outputs;
@@ -91,24 +95,51 @@ int render(const RenderOptions& options) {
     warn_about_depths(method, options.max_depth, options.rr_depth);
     set_path_length(method, path_length(loaded.summary, options.max_depth, options.rr_depth));
 
+    Budget limits = budget(options, loaded.summary);
+    const Span span = span_of(options, limits, method);
+    Checkpoint checkpoint(options, span);
     Cancellation cancellation;
     ProgressLine line(!options.quiet);
-    const Budget limits = budget(options, loaded.summary);
     const bool error_alone = limits.samples == 0 && limits.seconds == 0;
     bool stays_black = false;
     const std::vector<Layer> layers = render_extra(options, loaded, limits, cancellation, line);
-    const Job job{.budget = limits,
-                  .settings = {.seed = options.seed,
-                               .threads = options.threads,
-                               .sampling = options.sampling,
-                               .stop = cancellation.token()},
-                  .observer = [&](const Progress& progress, const RenderStatistics& statistics) {
-                      line.update(progress, statistics.counts.rays);
-                      stays_black = error_alone && progress.iterations >= most_black_samples &&
-                                    std::isinf(progress.film.relative_error());
-                      if (stays_black) cancellation.stop();
-                  }};
-    Rendered rendered = run(loaded.scene, method, job);
+    limits.samples = span.samples;
+    const auto write_images = [&](Image image) {
+        keep_stand_ins(image, loaded.summary);
+        const auto exposure = exposure_of_pictures(options, loaded.summary, image);
+        for (const auto& output : options.outputs)
+            write_image(output, image, {.exposure = exposure.value_or(0)}, layers);
+        return exposure;
+    };
+    Now image_time(options.write_every);
+    const auto write_meanwhile = [&](Image image) {
+        try {
+            write_images(std::move(image));
+        } catch (const Error& error) {  // which may be gone the next time; at the end it is one
+            print_warning(fmt::format("--write-every: {}", error.what()));
+        }
+        image_time.done();
+    };
+    Job job{.budget = limits,
+            .settings = {.seed = options.seed,
+                         .threads = options.threads,
+                         .sampling = options.sampling,
+                         .stop = cancellation.token(),
+                         .first_iteration = span.begin},
+            .observer =
+                [&](const Progress& progress, const Halt& halt) {
+                    line.update(progress, halt.statistics.counts.rays - checkpoint.rays_before());
+                    stays_black = error_alone && progress.iterations >= most_black_samples &&
+                                  std::isinf(progress.film.relative_error());
+                    if (stays_black) cancellation.stop();
+                    checkpoint.observe(halt);
+                    if (image_time.due()) write_meanwhile(halt.image());
+                },
+            .from = checkpoint.take(),
+            .from_where = detail::file_origin(options.checkpoint),
+            .content = options.checkpoint.empty() ? "" : content_of(options.scene, loaded.summary),
+            .end = [&](const Halt& halt) { checkpoint.end(halt); }};
+    Rendered rendered = run(loaded.scene, method, std::move(job));
     line.clear();
 
     RenderStatistics& statistics = rendered.statistics;
@@ -121,10 +152,8 @@ int render(const RenderOptions& options) {
         return Status::cancelled;
     }
     warn_about_values(statistics.counts, rendered.image);
-    keep_stand_ins(rendered.image, loaded.summary);
-    const auto exposure = exposure_of_pictures(options, loaded.summary, rendered.image);
-    for (const auto& output : options.outputs)
-        write_image(output, rendered.image, {.exposure = exposure.value_or(0)}, layers);
+    const auto exposure = write_images(rendered.image);
+    checkpoint.complain();
     if (!options.stats.empty()) write_text(options.stats, statistics_json(loaded, method, options, rendered));
     // Whoever reads the statistics from standard output wants nothing else there.
     if (!options.quiet)

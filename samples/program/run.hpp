@@ -7,6 +7,7 @@
 #include <lightswitch/method/extra_outputs.hpp>
 #include <lightswitch/render/path_replay.hpp>
 #include <lightswitch/render/render.hpp>
+#include <lightswitch/render/render_state.hpp>
 #include <lightswitch/scene/any_scene.hpp>
 #include <lightswitch/verify/estimator.hpp>
 
@@ -14,12 +15,25 @@
 
 namespace lightswitch::program {
 
+/// What can be had of a render between two iterations, or at its end.
+struct Halt {
+    const RenderStatistics& statistics;
+    std::function<RenderState()> state;
+    std::function<Image()> image;
+};
+
 /// What to render, but for scene and method.
 struct Job {
-    Budget budget;
+    Budget budget;  ///< seconds count what was rendered before, too
     Settings settings;
-    /// Called on the rendering thread after every iteration, with the counts so far.
-    std::function<void(const Progress&, const RenderStatistics&)> observer;
+    /// Called on the rendering thread after every iteration.
+    std::function<void(const Progress&, const Halt&)> observer;
+    /// From where to go on, if from anywhere, and what the scene holds, as a text.
+    std::optional<RenderState> from{};
+    Origin from_where{};
+    std::string content{};
+    /// Called at the end where there are iterations.
+    std::function<void(const Halt&)> end = [](const Halt&) {};
 };
 
 /// What came of it.
@@ -29,8 +43,12 @@ struct Rendered {
     double estimated_error = 0;  ///< `Film::relative_error`
 };
 
-/// Renders until the budget is spent or the stop token asks for an end.
-Rendered run(const AnyScene& scene, const AnyMethod& method, const Job& job);
+/// Renders until the budget is spent or the stop token asks for an end. Throws `Error` when the job cannot go on from
+/// where it is to.
+Rendered run(const AnyScene& scene, const AnyMethod& method, Job job);
+
+/// Whether the method's iterations depend on those before.
+bool has_history(const AnyMethod& method);
 
 /// Renders extra outputs; none when the stop token asks for an end.
 std::vector<Layer> run_outputs(const AnyScene& scene, const std::vector<ExtraOutput>& outputs, int samples,

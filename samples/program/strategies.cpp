@@ -152,7 +152,7 @@ int strategies(const StrategiesCommand& command) {
         job.settings.seed = command.seed;
         job.settings.threads = command.threads;
         job.settings.stop = cancellation.token();
-        job.observer = [&](const Progress& progress, const RenderStatistics&) {
+        job.observer = [&](const Progress& progress, const Halt&) {
             line.update(seconds(), fmt::format("{}: {:.0f} %", what, 100 * progress.fraction));
         };
         Rendered rendered = run(loaded.scene, bdpt, job);

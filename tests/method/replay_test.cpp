@@ -78,7 +78,8 @@ void check_method(const SceneType& scene, const M& method, const Settings& setti
         const auto pixel = static_cast<std::size_t>(y * width + x);
         CAPTURE(x);
         CAPTURE(y);
-        DVec3 sum(0), squares(0);
+        PixelSums sums;
+        PixelSums::Windows windows;
         for (int n = 0; n < iterations; ++n) {
             const PathReplay replayed = replay(scene, method, settings, x, y, static_cast<std::uint64_t>(n));
             check_sums(replayed);
@@ -86,11 +87,12 @@ void check_method(const SceneType& scene, const M& method, const Settings& setti
             if (std::string_view(M::name) != "mlt") CHECK(replayed.explained);
             CHECK(replayed.dropped == 0);
             CHECK_FALSE(replayed.cancelled);
-            sum += replayed.value();
-            squares += replayed.value() * replayed.value();
-            CHECK(same_bits(Rgb(sum / double(n + 1)), means[static_cast<std::size_t>(n)].pixels()[pixel]));
+            sums.add(windows, replayed.value());
+            CHECK(same_bits(Rgb(sums.values(windows) / double(n + 1)),
+                            means[static_cast<std::size_t>(n)].pixels()[pixel]));
         }
-        const DVec3 spread = glm::max(squares - sum * sum / double(iterations), DVec3(0));
+        const DVec3 sum = sums.values(windows);
+        const DVec3 spread = glm::max(sums.squares(windows) - sum * sum / double(iterations), DVec3(0));
         CHECK(same_bits(Rgb(spread / double(iterations * (iterations - 1))), variance.pixels()[pixel]));
     }
 }

@@ -116,12 +116,14 @@ std::size_t check_values(const M& method, int iterations) {
     }
     std::size_t events = 0;
     for (int pixel = 0; pixel < 20 * 17; pixel += 37) {
-        DVec3 sum(0);
+        PixelSums sums;
+        PixelSums::Windows windows;
         for (int n = 0; n < iterations; ++n) {
             const PathReplay replayed =
                 replay(scene(), method, {.seed = 4}, pixel % 20, pixel / 20, static_cast<std::uint64_t>(n));
-            sum += replayed.value();
+            sums.add(windows, replayed.value());
             events += replayed.events.size();
+            const DVec3 sum = sums.values(windows);
             CHECK(Rgb(sum / double(n + 1)) == means[static_cast<std::size_t>(n)].pixels()[std::size_t(pixel)]);
         }
     }
@@ -162,12 +164,11 @@ TEST_CASE("replay: splats are added in the order of the film, with all bits of i
     session.run({.samples = n});
     DVec3 mean(0), variance(0);
     for (int pixel = 0; pixel < 20 * 17; ++pixel) {
-        DVec3 sum(0), squares(0);
-        for (std::uint64_t i = 0; i < n; ++i) {
-            const DVec3 value = replay(scene(), method, {.seed = 5}, pixel % 20, pixel / 20, i).value();
-            sum += value;
-            squares += value * value;
-        }
+        PixelSums sums;
+        PixelSums::Windows windows;
+        for (std::uint64_t i = 0; i < n; ++i)
+            sums.add(windows, replay(scene(), method, {.seed = 5}, pixel % 20, pixel / 20, i).value());
+        const DVec3 sum = sums.values(windows), squares = sums.squares(windows);
         mean += sum / double(n);
         variance += glm::max(squares - sum * sum / double(n), DVec3(0)) / (double(n) * (n - 1));
     }

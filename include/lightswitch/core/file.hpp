@@ -16,7 +16,9 @@
 #include <system_error>
 
 #if defined(__unix__) || defined(__APPLE__)
+#include <fcntl.h>
 #include <sys/mman.h>
+#include <unistd.h>
 #define LIGHTSWITCH_MAPS_FILES 1
 #else
 #define LIGHTSWITCH_MAPS_FILES 0
@@ -39,16 +41,33 @@ struct CloseFile {
 };
 using FileHandle = std::unique_ptr<std::FILE, CloseFile>;
 
+/// Whether what is written must be on the device before its name is.
+enum class Flushed { no, yes };
+
+/// Brings a directory's names to the device; where that is not possible, nothing is lost but certainty.
+inline void flush_directory([[maybe_unused]] const std::filesystem::path& path) {
+#if LIGHTSWITCH_MAPS_FILES
+    const int directory = ::open(path.empty() ? "." : path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (directory < 0) return;
+    ::fsync(directory);
+    ::close(directory);
+#endif
+}
+
+/// The name of a file that is to become `target`: ".NAME.tmp-" and sixteen hexadecimal digits.
+inline std::string temporary_prefix(const std::filesystem::path& target) {
+    return "." + target.filename().string().substr(0, 200) + ".tmp-";  // leaves room for the rest in 255 bytes
+}
+
 /// A new file beside `target` that takes its place on `commit()` and vanishes without it.
 class TemporaryFile {
 public:
     explicit TemporaryFile(std::filesystem::path target) : target_(std::move(target)) {
-        const std::string name = target_.filename().string().substr(0, 200);  // leaves room for the suffix in 255 bytes
         std::random_device random;
         for (int attempt = 0; attempt < 16 && !file_; ++attempt) {
             std::array<char, 24> suffix{};
-            std::snprintf(suffix.data(), suffix.size(), ".tmp-%08x%08x", random(), random());
-            path_ = target_.parent_path() / ("." + name + suffix.data());
+            std::snprintf(suffix.data(), suffix.size(), "%08x%08x", random(), random());
+            path_ = target_.parent_path() / (temporary_prefix(target_) + suffix.data());
             file_.reset(std::fopen(path_.string().c_str(), "wbx"));  // x: never somebody else's file
             if (!file_ && errno != EEXIST) break;
         }
@@ -65,10 +84,13 @@ public:
     }
 
     /// Writes everything, closes, and renames. Throws `Error` when any of it fails (a full disk may show only then).
-    void commit(std::string_view bytes) {
+    void commit(std::string_view bytes, Flushed flushed = Flushed::no) {
         errno = 0;
         bool ok = std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) == bytes.size();
         ok = ok && std::fflush(file_.get()) == 0;
+#if LIGHTSWITCH_MAPS_FILES
+        ok = ok && (flushed == Flushed::no || ::fsync(::fileno(file_.get())) == 0);
+#endif
         int code = errno;
         if (std::fclose(file_.release()) != 0 && ok) {
             ok = false;
@@ -79,6 +101,7 @@ public:
         std::filesystem::rename(path_, target_, error);
         if (error) fail(file_origin(target_), "cannot put the finished file in place: " + error.message());
         committed_ = true;
+        if (flushed == Flushed::yes) flush_directory(target_.parent_path());
     }
 
 private:
@@ -141,6 +164,28 @@ inline void write_file_atomically(const std::filesystem::path& path, std::string
     const auto target = detail::resolve_output(path);
     detail::check_output_name(target);
     detail::TemporaryFile(target).commit(bytes);
+}
+
+/// The same, and after a power failure, too, the file is either as it was or complete.
+inline void write_file_durably(const std::filesystem::path& path, std::string_view bytes) {
+    const auto target = detail::resolve_output(path);
+    detail::check_output_name(target);
+    detail::TemporaryFile(target).commit(bytes, detail::Flushed::yes);
+}
+
+/// Removes what writing to `path` has left behind where a process was killed meanwhile. Nobody may be writing to it.
+inline void remove_leftovers(const std::filesystem::path& path) {
+    const auto target = detail::resolve_output(path);
+    const std::string prefix = detail::temporary_prefix(target);
+    const auto folder = target.has_parent_path() ? target.parent_path() : std::filesystem::path(".");
+    std::error_code error;
+    for (std::filesystem::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+        const std::string name = at->path().filename().string();
+        std::error_code ignored;
+        if (name.starts_with(prefix) && name.size() == prefix.size() + 16 &&
+            name.find_first_not_of("0123456789abcdef", prefix.size()) == std::string::npos)
+            std::filesystem::remove(at->path(), ignored);
+    }
 }
 
 /// Throws `Error` unless `write_file_atomically(path, ...)` can be expected to work. Creates a file in the directory

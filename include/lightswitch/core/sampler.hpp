@@ -170,6 +170,9 @@ public:
         return detail::to_unit_float(static_cast<std::uint32_t>(next_bits() >> 32));
     }
 
+    /// For who writes and reads it (render/archive.hpp).
+    void keep(auto& archive) { archive(state_); }
+
 private:
     [[gnu::always_inline]] std::uint64_t next_bits() {
         state_ += 0xa0761d6478bd642fu;

@@ -271,10 +271,10 @@ bool add_samples(const SceneType& scene, std::vector<OutputSums>& sums, int samp
 }  // namespace detail
 
 /// Renders outputs of a scene, of the size of its image: layers for `save_layers`, in the order given, each as
-/// `render(scene, output, {.samples = samples}, settings)` would make it, to the bit (but values that are not finite in
-/// single precision are not counted). A camera ray and the surface that it meets are found once for all of them. With
-/// the seed and sampling of an image, the rays are those of its first `samples` iterations: edges are filtered alike,
-/// as denoisers need it.
+/// `render(scene, output, {.samples = samples}, settings)` would make it, to the bit (but the film rounds a channel to
+/// 2^-32 of the largest in its pixel, and values that are not finite in single precision are not counted). A camera ray
+/// and the surface that it meets are found once for all of them. With the seed and sampling of an image, the rays are
+/// those of its first `samples` iterations: edges are filtered alike, as denoisers need it.
 ///
 /// 64 samples leave little noise: outputs have none but at edges and out of focus. The observer is called after each
 /// with an empty film. When `settings.stop` asks for an end there are no layers. Throws `Error` unless `samples` is at

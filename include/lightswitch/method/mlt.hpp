@@ -40,6 +40,8 @@ struct Mlt {
         Vec2 pixel{0};
         Rgb value{0};       ///< over its density: its mean over primary sample space is the sum over the pixels
         double target = 0;  ///< what the chain's density is proportional to
+
+        void keep(auto& archive) { archive(pixel.x, pixel.y, value.x, value.y, value.z, target); }
     };
 
     class State {
@@ -53,6 +55,9 @@ struct Mlt {
                     {"normalization", normalization()}};
         }
 
+        /// What `start` does not find again (render/archive.hpp).
+        void keep(auto& archive) { archive(chains, sum, drawn, steps, accepted, large); }
+
     private:
         friend Mlt;
         struct Chain {
@@ -61,6 +66,8 @@ struct Mlt {
             Sample current;
             std::uint64_t steps = 0, accepted = 0, large = 0;  // of the last iteration
             double large_sum = 0;                              // of the targets of its large steps
+
+            void keep(auto& archive) { archive(sample, depth, current); }
         };
         double normalization() const { return drawn > 0 ? sum / double(drawn) : 0; }
 

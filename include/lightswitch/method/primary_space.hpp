@@ -40,6 +40,12 @@ public:
         --now_;
     }
 
+    /// For who writes and reads it, between two steps (render/archive.hpp).
+    void keep(auto& archive) {
+        archive(random_, now_, last_large_, large_);
+        for (auto& stream : coordinates_) archive(stream);
+    }
+
     /// Reads one stream from its begin on; serves as the sampler of a path.
     class Reader {
     public:
@@ -61,6 +67,8 @@ private:
         std::uint32_t modified = 0;  // the step that changed it last; 0: never used
         float old_value = 0;
         std::uint32_t old_modified = 0;
+
+        void keep(auto& archive) { archive(value, modified, old_value, old_modified); }
     };
 
     float value(std::size_t stream, std::size_t position) {

@@ -2,55 +2,18 @@
 
 // The loop: iterations until the budget is spent, and nothing else.
 
-#include <lightswitch/core/error.hpp>
+#include <lightswitch/render/archive.hpp>
 #include <lightswitch/render/frame.hpp>
+#include <lightswitch/render/iterations.hpp>
 #include <lightswitch/render/method.hpp>
+#include <lightswitch/render/settings.hpp>
 
 #include <chrono>
-#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
 
 namespace lightswitch {
-
-/// When to stop: at whichever limit is met first. A limit of 0 is no limit; without any, 64 samples. Limits are numbers
-/// and not negative.
-struct Budget {
-    int samples = 0;     ///< iterations, which for most methods are samples per pixel
-    double seconds = 0;  ///< of rendering; at least one iteration is made
-    /// Estimated error of the image, see `Film::relative_error`; judged from 16 iterations on. That of a black image is
-    /// unknown: where there may be no light at all, set another limit, too.
-    double error = 0;
-};
-
-/// What an observer is told after every iteration.
-struct Progress {
-    std::uint64_t iterations = 0;
-    double seconds = 0;       ///< spent rendering
-    double fraction = 0;      ///< of the budget that is spent, 0 to 1; never falls
-    double seconds_left = 0;  ///< estimated
-    const Film& film;
-};
-
-/// How to render; the defaults are right for most uses.
-struct Settings {
-    std::uint64_t seed = 0;
-    int threads = 0;  ///< 0: as many as the machine has
-    Sampling sampling = Sampling::sobol;
-    std::stop_token stop = {};                           ///< ends the render early; whole iterations are kept
-    std::function<void(const Progress&)> observer = {};  ///< called on the rendering thread after every iteration
-};
-
-/// What a render did.
-struct RenderStatistics {
-    std::uint64_t iterations = 0;
-    double seconds = 0;  ///< rendering only, steady clock
-    int threads = 0;
-    bool cancelled = false;
-    RenderCounts counts;
-    std::vector<std::pair<std::string, double>> of_method;  ///< what the method's state says, by name
-};
 
 namespace detail {
 
@@ -89,15 +52,10 @@ struct MethodState {
     decltype(std::declval<ImageMethod>().start(std::declval<FrameType&>())) value;
 };
 
-/// Throws `Error` when a limit is not one.
-inline void check(const Budget& budget) {
-    const auto check_limit = [](double limit, const char* what) {
-        if (!(limit >= 0))
-            throw Error(std::string("the budget of ") + what + " is " + number_text(limit) + ": give 0 for no limit");
-    };
-    check_limit(budget.samples, "samples");
-    check_limit(budget.seconds, "seconds");
-    check_limit(budget.error, "error");
+template <class M>
+constexpr bool depends_on_history() {
+    if constexpr (requires { M::dependence; }) return M::dependence == Dependence::history;
+    else return true;
 }
 
 }  // namespace detail
@@ -124,9 +82,10 @@ public:
     Session(const SceneType&& scene, const M& method, const Settings& settings = {}) = delete;
     Session(const SceneType&& scene, const M& method, const Settings& settings, E executor) = delete;
 
-    /// Makes iterations until the budget is spent or the stop token asks for an end. Seconds count from this call;
-    /// samples and error concern everything accumulated so far. What a method or an observer throws comes out of here;
-    /// the whole iterations before it are kept. Throws `Error` when a limit is not one.
+    /// Makes iterations until the budget is spent or the stop token asks for an end: the first that have not been made,
+    /// from `Settings::first_iteration` on. Seconds count from this call; samples and error concern everything
+    /// accumulated so far. What a method or an observer throws comes out of here; the whole iterations before it are
+    /// kept. Throws `Error` when a limit is not one.
     void run(Budget budget) { run(budget, settings_.stop); }
     /// The same, but `pause` is what asks for an end, and another call can go on. Images are the same with and without.
     void run(Budget budget, const std::stop_token& pause);
@@ -136,20 +95,43 @@ public:
     /// The image so far, with metadata that says how it was made.
     Image image() const;
 
+    const SceneType& scene() const { return scene_; }
+    const M& method() const { return method_; }
+    const Settings& settings() const { return settings_; }
+    /// The iterations that the film holds.
+    const IterationSet& made() const { return made_; }
+
+    // What render/checkpoint.hpp is made of.
+    /// What the method keeps from one iteration to the next, as bytes. Throws `Error` when it does not say.
+    std::string method_state() const;
+    /// Whether there may be any.
+    static bool has_history();
+    /// Goes on from there; `method_state` is empty where there is none.
+    void restore(Film film, IterationSet made, RenderStatistics statistics, detail::ByteReader method_state);
+    /// The film of that iteration alone, which this render neither counts nor keeps.
+    Film film_of(std::uint64_t iteration);
+
 private:
     using State = detail::MethodState<SceneType, M, E>;
+    using StateValue = decltype(State::value);
 
     decltype(auto) image_method() const { return detail::as_image_method<Frame<SceneType, E>, SceneType>(method_); }
 
     Frame<SceneType, E> frame(std::uint64_t iteration, const std::stop_token& stop) {
+        return frame(iteration, stop, film_, statistics_.counts);
+    }
+    Frame<SceneType, E> frame(std::uint64_t iteration, const std::stop_token& stop, Film& film, RenderCounts& counts) {
         return Frame<SceneType, E>({.scene = scene_,
-                                    .film = film_,
+                                    .film = film,
                                     .executor = executor_,
                                     .sampling = settings_.sampling,
                                     .seed = settings_.seed,
                                     .iteration = iteration,
                                     .stop = stop,
-                                    .counts = statistics_.counts});
+                                    .counts = counts});
+    }
+    void note_method() {
+        if constexpr (requires { state_->value.statistics(); }) statistics_.of_method = state_->value.statistics();
     }
 
     static std::uint64_t wanted(const Budget& budget) { return static_cast<std::uint64_t>(budget.samples); }
@@ -161,6 +143,7 @@ private:
     E executor_;
     Film film_;
     RenderStatistics statistics_;
+    IterationSet made_;
     std::unique_ptr<State> state_;
 };
 
@@ -190,35 +173,89 @@ void Session<SceneType, M, E>::run(Budget budget, const std::stop_token& pause) 
     if (budget.samples == 0 && budget.seconds == 0 && budget.error == 0) budget.samples = 64;
     const auto begin = Clock::now();
     const std::uint64_t already = film_.iterations();
-    double fraction = 0;
-    while (!pause.stop_requested() && !(budget.samples > 0 && film_.iterations() >= wanted(budget))) {
-        auto current = frame(film_.iterations(), pause);
+    const double seconds_before = statistics_.seconds;
+    const auto spent_before = [&] {
+        return (budget.samples > 0 && already >= wanted(budget)) ||
+               (budget.error > 0 && already >= 16 && film_.relative_error() <= budget.error);
+    };
+    double fraction = spent_before() ? 1 : 0;
+    while (!pause.stop_requested() && fraction < 1) {
+        const std::uint64_t iteration = made_.next(settings_.seed, settings_.first_iteration);
+        const RenderCounts counts_before = statistics_.counts;
+        const auto forget = [&] {
+            film_.discard(executor_);
+            statistics_.counts = counts_before;
+        };
+        auto current = frame(iteration, pause);
         try {
             image_method().iterate(current, state_->value);
         } catch (...) {
-            film_.discard(executor_);
+            forget();
             throw;
         }
         if (current.broken_off()) {
-            film_.discard(executor_);
+            forget();
             break;
         }
         film_.commit(executor_);
+        made_.add(settings_.seed, iteration);
         statistics_.iterations = film_.iterations();
         const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+        statistics_.seconds = seconds_before + seconds;
         fraction = std::max(fraction, spent(budget, seconds, already));  // an estimated error may also grow
         if (settings_.observer) {
+            note_method();
             settings_.observer({.iterations = film_.iterations(),
                                 .seconds = seconds,
                                 .fraction = fraction,
                                 .seconds_left = fraction > 0 ? seconds * (1 / fraction - 1) : 0,
                                 .film = film_});
         }
-        if (fraction >= 1) break;
     }
     statistics_.cancelled = pause.stop_requested();
-    statistics_.seconds += std::chrono::duration<double>(Clock::now() - begin).count();
-    if constexpr (requires { state_->value.statistics(); }) statistics_.of_method = state_->value.statistics();
+    statistics_.seconds = seconds_before + std::chrono::duration<double>(Clock::now() - begin).count();
+    if (film_.iterations() > already) note_method();
+}
+
+template <class SceneType, class M, Executor E>
+bool Session<SceneType, M, E>::has_history() {
+    return !std::is_empty_v<StateValue> && detail::depends_on_history<M>();
+}
+
+template <class SceneType, class M, Executor E>
+std::string Session<SceneType, M, E>::method_state() const {
+    std::string bytes;
+    if constexpr (detail::Kept<StateValue, detail::ArchiveWriter>) detail::ArchiveWriter{bytes}(state_->value);
+    else if (has_history())
+        throw Error("the method " + std::string(M::name) +
+                    " keeps something from one iteration to the next and does not say how to write it: its state needs "
+                    "`keep(archive)`, or the method a `dependence` other than on its history");
+    return bytes;
+}
+
+template <class SceneType, class M, Executor E>
+void Session<SceneType, M, E>::restore(Film film, IterationSet made, RenderStatistics statistics,
+                                       [[maybe_unused]] detail::ByteReader method_state) {
+    if (film.width() != film_.width() || film.height() != film_.height() || made.count() != film.iterations())
+        throw Error("that film is not of this render");
+    if constexpr (detail::Kept<StateValue, detail::ArchiveReader>) detail::ArchiveReader{method_state}(state_->value);
+    film_ = std::move(film);
+    made_ = std::move(made);
+    statistics.threads = statistics_.threads;
+    statistics_ = std::move(statistics);
+}
+
+template <class SceneType, class M, Executor E>
+Film Session<SceneType, M, E>::film_of(std::uint64_t iteration) {
+    Film film(film_.width(), film_.height());
+    RenderCounts counts;
+    auto preparation = frame(Frame<SceneType, E>::before_the_first, {}, film, counts);
+    State state{image_method().start(preparation)};
+    film.discard(executor_);
+    auto only = frame(iteration, {}, film, counts);
+    image_method().iterate(only, state.value);
+    film.commit(executor_);
+    return film;
 }
 
 template <class SceneType, class M, Executor E>
@@ -230,7 +267,7 @@ Image Session<SceneType, M, E>::image() const {
                        {"camera", scene_.camera_id()},
                        {"samples", std::to_string(film_.iterations())},
                        {"seconds", std::to_string(statistics_.seconds)},
-                       {"seed", std::to_string(settings_.seed)},
+                       {"seed", made_.ranges().empty() ? std::to_string(settings_.seed) : made_.seeds()},
                        {"sampling", std::string(lightswitch::name(settings_.sampling))}};
     if (statistics_.counts.non_finite > 0)
         result.metadata["non_finite"] = std::to_string(statistics_.counts.non_finite);

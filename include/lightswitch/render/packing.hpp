@@ -1,0 +1,117 @@
+#pragma once
+
+// The bytes of a film's sums, and a checksum.
+
+#include <lightswitch/core/sampler.hpp>
+#include <lightswitch/film/bytes.hpp>
+#include <lightswitch/film/film.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lightswitch::detail {
+
+/// A checksum of 64-bit words. Every step is a bijection of the sum and of the word, so that a change within one word
+/// is always found; another damage is not with a probability of 2^-64.
+class Checksum {
+public:
+    void mix(std::uint64_t word) { sum_ = mix64(sum_ * 0x9e3779b97f4a7c15u + word); }
+    std::uint64_t value() const { return sum_; }
+
+    static std::uint64_t of(std::string_view bytes) {
+        Checksum sum;
+        std::size_t i = 0;
+        for (; i + 8 <= bytes.size(); i += 8) sum.mix(get_little_endian<std::uint64_t>(bytes.data() + i));
+        std::uint64_t last = bytes.size();
+        for (; i < bytes.size(); ++i) last = last << 8 | static_cast<unsigned char>(bytes[i]);
+        sum.mix(last);
+        return sum.value();
+    }
+
+private:
+    std::uint64_t sum_ = 0x6c73776c73776c73u;
+};
+
+/// Numbers that are packed together: as their differences from the first one, in as many bytes as the largest needs.
+inline constexpr std::size_t packed_together = 1024;
+
+inline void pack(std::string& out, const auto& number, std::size_t count) {
+    for (std::size_t begin = 0; begin < count; begin += packed_together) {
+        const std::size_t end = std::min(begin + packed_together, count);
+        const auto first = static_cast<std::uint64_t>(number(begin));
+        // The sign goes last, so that small numbers of either are small.
+        const auto difference = [&](std::size_t i) {
+            const std::uint64_t d = static_cast<std::uint64_t>(number(i)) - first;
+            return d << 1 ^ (d >> 63 ? ~std::uint64_t{0} : 0);
+        };
+        std::uint64_t all = 0;
+        for (std::size_t i = begin; i < end; ++i) all |= difference(i);
+        const auto bytes = static_cast<std::size_t>(std::bit_width(all) + 7) / 8;
+        put_little_endian(out, first);
+        out += static_cast<char>(bytes);
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::uint64_t d = difference(i);
+            char digits[8];
+            for (std::size_t k = 0; k < bytes; ++k) digits[k] = static_cast<char>(d >> 8 * k & 0xff);
+            out.append(digits, bytes);
+        }
+    }
+}
+
+inline void unpack(ByteReader& in, const auto& set, std::size_t count) {
+    for (std::size_t begin = 0; begin < count; begin += packed_together) {
+        const std::size_t end = std::min(begin + packed_together, count);
+        const auto first = in.number<std::uint64_t>();
+        const std::size_t bytes = in.number<std::uint8_t>();
+        if (bytes > 8) fail(in.where(), "is damaged");
+        const std::string_view packed = in.take(bytes * (end - begin));
+        for (std::size_t i = begin; i < end; ++i) {
+            std::uint64_t d = 0;
+            for (std::size_t k = 0; k < bytes; ++k)
+                d |= std::uint64_t{static_cast<unsigned char>(packed[(i - begin) * bytes + k])} << 8 * k;
+            set(i, static_cast<std::int64_t>(first + (d >> 1 ^ (d & 1 ? ~std::uint64_t{0} : 0))));
+        }
+    }
+}
+
+inline void pack_film(std::string& out, const Film& film) {
+    for (std::size_t c = 0; c < 6; ++c) {
+        pack(
+            out, [&](std::size_t i) { return film.sums()[i].coarse[c]; }, film.area());
+        pack(
+            out, [&](std::size_t i) { return film.sums()[i].fine[c]; }, film.area());
+    }
+    for (std::size_t k = 0; k < 2; ++k)
+        pack(
+            out, [&](std::size_t i) { return std::int64_t{film.windows()[i].of[k]}; }, film.area());
+}
+
+inline void unpack_film(ByteReader& in, Film& film, std::uint64_t iterations) {
+    std::vector<PixelSums> sums(film.area());
+    std::vector<PixelSums::Windows> windows(film.area());
+    for (std::size_t c = 0; c < 6; ++c) {
+        unpack(
+            in, [&](std::size_t i, std::int64_t digits) { sums[i].coarse[c] = digits; }, film.area());
+        unpack(
+            in, [&](std::size_t i, std::int64_t digits) { sums[i].fine[c] = digits; }, film.area());
+    }
+    for (std::size_t k = 0; k < 2; ++k)
+        unpack(
+            in,
+            [&](std::size_t i, std::int64_t window) {
+                const bool possible = window == PixelSums::infinite_window ||
+                                      (window >= PixelSums::lowest_window && window <= PixelSums::highest_window);
+                if (!possible) fail(in.where(), "is damaged");
+                windows[i].of[k] = static_cast<std::int8_t>(window);
+            },
+            film.area());
+    if (in.remaining() > 0) fail(in.where(), "is damaged");
+    film.restore(iterations, std::move(sums), std::move(windows));
+}
+
+}  // namespace lightswitch::detail
