@@ -1,4 +1,5 @@
 #include "cancellation.hpp"
+#include "denoising.hpp"
 #include "load.hpp"
 #include "messages.hpp"
 #include "method_notes.hpp"
@@ -38,13 +39,18 @@ Budget budget(const RenderOptions& options, const SceneSummary& summary) {
 /// and more show nothing new.
 std::vector<Layer> render_extra(const RenderOptions& options, const LoadedScene& loaded, const Budget& limits,
                                 const Cancellation& cancellation, ProgressLine& line) {
-    if (options.extra.empty()) return {};
+    std::vector<ExtraOutput> wanted = options.extra;
+    if (!options.denoise.empty())
+        for (const char* guide : {"albedo", "normal"})
+            if (std::none_of(wanted.begin(), wanted.end(), [&](const auto& o) { return output_name(o) == guide; }))
+                wanted.push_back(output_by_name(guide));
+    if (wanted.empty()) return {};
     const int samples = limits.samples == 0 ? 64 : std::clamp(limits.samples, 16, 64);
     const auto tell = [&](const Progress& progress) {
         line.update(progress.seconds,
                     fmt::format("{:3.0f} %  extra outputs, before the image", 100 * progress.fraction));
     };
-    std::vector<Layer> layers = run_outputs(loaded.scene, options.extra, samples,
+    std::vector<Layer> layers = run_outputs(loaded.scene, wanted, samples,
                                             {.seed = options.seed,
                                              .threads = options.threads,
                                              .sampling = options.sampling,
@@ -64,7 +70,7 @@ std::optional<float> exposure_of_pictures(const RenderOptions& options, const Sc
 }
 
 std::string summary_line(const AnyMethod& method, const Rendered& rendered, const RenderOptions& options,
-                         const std::optional<float>& exposure) {
+                         const Denoising& denoising, const std::optional<float>& exposure) {
     const RenderStatistics& statistics = rendered.statistics;
     std::string text =
         fmt::format("{} ({}): {} samples per pixel in {:.3f} s, {:.2f} Mrays/s", method_name(method),
@@ -72,6 +78,10 @@ std::string summary_line(const AnyMethod& method, const Rendered& rendered, cons
                     statistics.seconds > 0 ? 1e-6 * double(statistics.counts.rays) / statistics.seconds : 0);
     if (std::isfinite(rendered.estimated_error))
         text += fmt::format(", estimated error {:.2g} %", 100 * rendered.estimated_error);
+    if (!denoising.denoiser.empty())
+        text += fmt::format(" (of the samples {:.2g} %), denoised by {}, {:.0f} % of the detail from samples",
+                            100 * denoising.mixed.relative_error_of_samples, denoising.denoiser,
+                            100 * denoising.mixed.detail_from_samples);
     if (exposure) text += fmt::format(", exposure {:.4g} stops", *exposure);
     for (std::size_t i = 0; i < options.outputs.size(); ++i)
         text += (i == 0 ? "; wrote " : ", ") + options.outputs[i].string();
@@ -91,12 +101,16 @@ int render(const RenderOptions& options) {
     warn_about_depths(method, options.max_depth, options.rr_depth);
     set_path_length(method, path_length(loaded.summary, options.max_depth, options.rr_depth));
 
+    Denoising denoising;
+    if (!options.denoise.empty()) denoising.denoiser = choose_denoiser(options.denoise);
+    const bool denoised = !denoising.denoiser.empty();
+
     Cancellation cancellation;
     ProgressLine line(!options.quiet);
     const Budget limits = budget(options, loaded.summary);
     const bool error_alone = limits.samples == 0 && limits.seconds == 0;
     bool stays_black = false;
-    const std::vector<Layer> layers = render_extra(options, loaded, limits, cancellation, line);
+    std::vector<Layer> layers = render_extra(options, loaded, limits, cancellation, line);
     const Job job{.budget = limits,
                   .settings = {.seed = options.seed,
                                .threads = options.threads,
@@ -108,7 +122,8 @@ int render(const RenderOptions& options) {
                                     std::isinf(progress.film.relative_error());
                       if (stays_black) cancellation.stop();
                   }};
-    Rendered rendered = run(loaded.scene, method, job);
+    Rendered rendered =
+        denoised ? run_denoised(loaded.scene, method, job, layers, denoising) : run(loaded.scene, method, job);
     line.clear();
 
     RenderStatistics& statistics = rendered.statistics;
@@ -122,13 +137,24 @@ int render(const RenderOptions& options) {
     }
     warn_about_values(statistics.counts, rendered.image);
     keep_stand_ins(rendered.image, loaded.summary);
+    if (denoised) {
+        warn_about_denoising(denoising, statistics.iterations);
+        // Guides that nobody asked for are no layers.
+        std::erase_if(layers, [&](const Layer& layer) {
+            return std::none_of(options.extra.begin(), options.extra.end(),
+                                [&](const auto& o) { return output_name(o) == layer.name; });
+        });
+        add_denoising_layers(layers, denoising);
+    }
     const auto exposure = exposure_of_pictures(options, loaded.summary, rendered.image);
     for (const auto& output : options.outputs)
         write_image(output, rendered.image, {.exposure = exposure.value_or(0)}, layers);
-    if (!options.stats.empty()) write_text(options.stats, statistics_json(loaded, method, options, rendered));
+    if (!options.stats.empty())
+        write_text(options.stats, statistics_json(loaded, method, options, rendered, denoising));
     // Whoever reads the statistics from standard output wants nothing else there.
     if (!options.quiet)
-        fmt::print(options.stats == "-" ? stderr : stdout, "{}", summary_line(method, rendered, options, exposure));
+        fmt::print(options.stats == "-" ? stderr : stdout, "{}",
+                   summary_line(method, rendered, options, denoising, exposure));
     if (!statistics.cancelled) return success;
     print_note(fmt::format("cancelled: the image holds {} samples per pixel", statistics.iterations));
     return Status::cancelled;
