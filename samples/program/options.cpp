@@ -1,5 +1,6 @@
 #include "options.hpp"
 
+#include "denoising.hpp"
 #include "method_notes.hpp"
 #include "scene_files.hpp"
 #include "values.hpp"
@@ -156,6 +157,17 @@ void add_render(CLI::App& app, RenderOptions& options) {
         [&](const std::string& text) { options.budget.error = parse_number_option("--error", text, 0, true); },
         "estimated root mean square error of a pixel as a fraction of the\nimage's mean (0.01 is 1 %), judged from 16 "
         "samples on.\nAlone it ends an image that stays black after 256 samples");
+    add_value(
+        app, "--denoise", "NAME",
+        [&](const std::string& text) {
+            if (std::find(denoiser_names.begin(), denoiser_names.end(), text) == denoiser_names.end())
+                throw Error(
+                    fmt::format("--denoise: there is no denoiser \"{}\"; known are {}", text, list(denoiser_names)));
+            options.denoise = text;
+        },
+        "take noise out, as far as the samples do not object: oidn (Open\nImage Denoise 2, where it is installed), "
+        "own, "
+        "or auto: oidn if it is\nthere. --error is then that of the result");
     add_seed(app, options.seed, "another seed gives other noise (default: 0)");
     add_threads(app, options.threads, ".\nThe image is the same for any number");
     add_path_options(app, options.max_depth, options.rr_depth, options.sampling);
@@ -181,6 +193,10 @@ void add_render(CLI::App& app, RenderOptions& options) {
         "depth.Z (distance from the camera), position.X .Y .Z, shape.I and primitive.I (numbers from 1, of what the\n"
         "pixel's centre sees). Albedo, which looks through mirrors and glass, and normal guide denoisers. They are\n"
         "rendered before the image, by the same camera rays, 16 to 64 per pixel; 0 is where nothing is seen.\n\n"
+        "--denoise renders half of the samples with another seed, denoises and mixes the result with the samples, so\n"
+        "that the error goes on falling as they grow. .exr files get the layers error.Y (estimated, of each pixel),\n"
+        "from_samples.Y (0 to 1) and samples.R .G .B (the image without denoising). The environment variable\n"
+        "LIGHTSWITCH_OIDN may name the library of Open Image Denoise.\n\n"
         "Examples:\n"
         "  lightswitch render cornell-box --output box.png\n"
         "  lightswitch render cornell-box --aov albedo,normal,depth --output box.exr\n"
@@ -188,12 +204,15 @@ void add_render(CLI::App& app, RenderOptions& options) {
         "  lightswitch render room.xml --error 0.02 --seconds 60 --size 640x360 --output room.png\n"
         "  lightswitch render cornell-spheres --method photon --radius 3 --photon-paths 2 --output caustic.png\n"
         "  lightswitch render cornell-box --spp 16 --stats - --quiet\n"
-        "  lightswitch render room.xml --spp 100000 --checkpoint room.lsw --write-every 60 --output room.exr\n\n"
+        "  lightswitch render room.xml --spp 100000 --checkpoint room.lsw --write-every 60 --output room.exr\n"
+        "  lightswitch render cornell-box --spp 16 --denoise auto --output box.exr --output box.png\n\n"
         "Keys of --stats: method, kind, scene, scene_type, width, height, samples_per_pixel, seconds (rendering\n"
         "only), rays, shadow_rays, rays_per_second, samples_per_second, threads, seed, sampler, max_depth,\n"
         "rr_depth, stand_ins, mean, estimated_error, non_finite, first_non_finite, splats, paths, triangles, spheres, "
         "lights,\n"
         "build_seconds, embree_bytes, scene_bytes, camera, embree_version, lightswitch_version, cancelled.\n"
+        "--denoise adds denoiser, denoise_seconds, estimated_error_of_samples, estimated_error_of_denoised (unmixed)\n"
+        "and detail_from_samples.\n"
         "Methods add their settings (initial_radius_pixels, alpha, paths_per_pixel, final_gather, max_chains,\n"
         "bootstrap, large_steps, refine) and what they counted, in the last iteration (photons, photon_map_bytes,\n"
         "light_vertices, radius_pixels) or in all (chains, mutations, acceptance_rate, large_step_rate,\n"

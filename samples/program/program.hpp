@@ -59,6 +59,7 @@ struct RenderOptions {
     MethodOptions of_method;
     std::vector<std::filesystem::path> outputs;
     std::vector<ExtraOutput> extra;  ///< layers of the outputs that can hold them; no two of one name
+    std::string denoise;             ///< which denoiser (`denoiser_names`); empty: none
     std::string stats;               ///< a file, "-" for standard output, or empty
     Budget budget;                   ///< without any limit: what the scene says, or 64 samples
     std::optional<int> max_depth, rr_depth;

@@ -1,4 +1,5 @@
 #include "cancellation.hpp"
+#include "denoising.hpp"
 #include "keeping.hpp"
 #include "load.hpp"
 #include "messages.hpp"
@@ -23,6 +24,9 @@ Outputs checked_outputs(const RenderOptions& options) {
         throw Error("nothing would be kept: name a file with --output (.png, .exr, .hdr or .pfm)");
     if (options.write_every > 0 && options.outputs.empty())
         throw Error("--write-every: there is no image to write: name one with --output");
+    if (!options.denoise.empty() && (!options.checkpoint.empty() || options.write_every > 0))
+        throw Error("--denoise: of a denoised render neither states nor images are written meanwhile: leave out " +
+                    std::string(options.checkpoint.empty() ? "--write-every" : "--checkpoint"));
     Outputs outputs;
     for (const auto& output : options.outputs) outputs.add_image("--output", output);
     outputs.add_text("--stats", options.stats);
@@ -42,13 +46,18 @@ Budget budget(const RenderOptions& options, const SceneSummary& summary) {
 /// and more show nothing new.
 std::vector<Layer> render_extra(const RenderOptions& options, const LoadedScene& loaded, const Budget& limits,
                                 const Cancellation& cancellation, ProgressLine& line) {
-    if (options.extra.empty()) return {};
+    std::vector<ExtraOutput> wanted = options.extra;
+    if (!options.denoise.empty())
+        for (const char* guide : {"albedo", "normal"})
+            if (std::none_of(wanted.begin(), wanted.end(), [&](const auto& o) { return output_name(o) == guide; }))
+                wanted.push_back(output_by_name(guide));
+    if (wanted.empty()) return {};
     const int samples = limits.samples == 0 ? 64 : std::clamp(limits.samples, 16, 64);
     const auto tell = [&](const Progress& progress) {
         line.update(progress.seconds,
                     fmt::format("{:3.0f} %  extra outputs, before the image", 100 * progress.fraction));
     };
-    std::vector<Layer> layers = run_outputs(loaded.scene, options.extra, samples,
+    std::vector<Layer> layers = run_outputs(loaded.scene, wanted, samples,
                                             {.seed = options.seed,
                                              .threads = options.threads,
                                              .sampling = options.sampling,
@@ -68,7 +77,7 @@ std::optional<float> exposure_of_pictures(const RenderOptions& options, const Sc
 }
 
 std::string summary_line(const AnyMethod& method, const Rendered& rendered, const RenderOptions& options,
-                         const std::optional<float>& exposure) {
+                         const Denoising& denoising, const std::optional<float>& exposure) {
     const RenderStatistics& statistics = rendered.statistics;
     std::string text =
         fmt::format("{} ({}): {} samples per pixel in {:.3f} s, {:.2f} Mrays/s", method_name(method),
@@ -76,6 +85,10 @@ std::string summary_line(const AnyMethod& method, const Rendered& rendered, cons
                     statistics.seconds > 0 ? 1e-6 * double(statistics.counts.rays) / statistics.seconds : 0);
     if (std::isfinite(rendered.estimated_error))
         text += fmt::format(", estimated error {:.2g} %", 100 * rendered.estimated_error);
+    if (!denoising.denoiser.empty())
+        text += fmt::format(" (of the samples {:.2g} %), denoised by {}, {:.0f} % of the detail from samples",
+                            100 * denoising.mixed.relative_error_of_samples, denoising.denoiser,
+                            100 * denoising.mixed.detail_from_samples);
     if (exposure) text += fmt::format(", exposure {:.4g} stops", *exposure);
     for (std::size_t i = 0; i < options.outputs.size(); ++i)
         text += (i == 0 ? "; wrote " : ", ") + options.outputs[i].string();
@@ -98,11 +111,15 @@ int render(const RenderOptions& options) {
     Budget limits = budget(options, loaded.summary);
     const Span span = span_of(options, limits, method);
     Checkpoint checkpoint(options, span);
+    Denoising denoising;
+    if (!options.denoise.empty()) denoising.denoiser = choose_denoiser(options.denoise);
+    const bool denoised = !denoising.denoiser.empty();
+
     Cancellation cancellation;
     ProgressLine line(!options.quiet);
     const bool error_alone = limits.samples == 0 && limits.seconds == 0;
     bool stays_black = false;
-    const std::vector<Layer> layers = render_extra(options, loaded, limits, cancellation, line);
+    std::vector<Layer> layers = render_extra(options, loaded, limits, cancellation, line);
     limits.samples = span.samples;
     const auto write_images = [&](Image image) {
         keep_stand_ins(image, loaded.summary);
@@ -139,7 +156,8 @@ int render(const RenderOptions& options) {
             .from_where = detail::file_origin(options.checkpoint),
             .content = options.checkpoint.empty() ? "" : content_of(options.scene, loaded.summary),
             .end = [&](const Halt& halt) { checkpoint.end(halt); }};
-    Rendered rendered = run(loaded.scene, method, std::move(job));
+    Rendered rendered = denoised ? run_denoised(loaded.scene, method, job, layers, denoising)
+                                 : run(loaded.scene, method, std::move(job));
     line.clear();
 
     RenderStatistics& statistics = rendered.statistics;
@@ -152,12 +170,23 @@ int render(const RenderOptions& options) {
         return Status::cancelled;
     }
     warn_about_values(statistics.counts, rendered.image);
+    if (denoised) {
+        warn_about_denoising(denoising, statistics.iterations);
+        // Guides that nobody asked for are no layers.
+        std::erase_if(layers, [&](const Layer& layer) {
+            return std::none_of(options.extra.begin(), options.extra.end(),
+                                [&](const auto& o) { return output_name(o) == layer.name; });
+        });
+        add_denoising_layers(layers, denoising);
+    }
     const auto exposure = write_images(rendered.image);
     checkpoint.complain();
-    if (!options.stats.empty()) write_text(options.stats, statistics_json(loaded, method, options, rendered));
+    if (!options.stats.empty())
+        write_text(options.stats, statistics_json(loaded, method, options, rendered, denoising));
     // Whoever reads the statistics from standard output wants nothing else there.
     if (!options.quiet)
-        fmt::print(options.stats == "-" ? stderr : stdout, "{}", summary_line(method, rendered, options, exposure));
+        fmt::print(options.stats == "-" ? stderr : stdout, "{}",
+                   summary_line(method, rendered, options, denoising, exposure));
     if (!statistics.cancelled) return success;
     print_note(fmt::format("cancelled: the image holds {} samples per pixel", statistics.iterations));
     return Status::cancelled;

@@ -27,7 +27,7 @@ Json non_finite(const RenderCounts& counts, int width) {
 }  // namespace
 
 std::string statistics_json(const LoadedScene& loaded, const AnyMethod& method, const RenderOptions& options,
-                            const Rendered& rendered) {
+                            const Rendered& rendered, const Denoising& denoising) {
     const RenderStatistics& statistics = rendered.statistics;
     const RenderCounts& counts = statistics.counts;
     const DVec3 mean = rendered.image.mean();
@@ -79,6 +79,13 @@ std::string statistics_json(const LoadedScene& loaded, const AnyMethod& method, 
             json["camera"] = built.camera_id();
         },
         loaded.scene);
+    if (!denoising.denoiser.empty()) {
+        json["denoiser"] = denoising.denoiser;
+        json["denoise_seconds"] = denoising.seconds;
+        json["estimated_error_of_samples"] = denoising.mixed.relative_error_of_samples;
+        json["estimated_error_of_denoised"] = denoising.mixed.relative_error_of_denoised;
+        json["detail_from_samples"] = denoising.mixed.detail_from_samples;
+    }
     for (const auto& [key, value] : statistics.of_method) json[key] = value;
     json["embree_version"] = RTC_VERSION_STRING;
     json["lightswitch_version"] = version();
