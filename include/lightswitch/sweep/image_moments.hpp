@@ -52,6 +52,13 @@ public:
     /// The mean of the images over all pixels and channels, from the spread of the images.
     Estimate level() const { return Estimate::of(means_); }
 
+    /// The mean of the variance of one image over pixels and channels.
+    double mean_variance() const {
+        double sum = 0;
+        for (std::size_t i = 0; i < size(); ++i) sum += sum_of(variance(i));
+        return sum / (3 * double(size()));
+    }
+
     /// What the variance of one image adds to its relMSE against an image without noise.
     double relative_variance(const Image& reference) const {
         double sum = 0;
@@ -67,6 +74,29 @@ private:
     std::vector<DVec3> sum_, squares_;
     std::vector<double> means_;
 };
+
+/// The mean over squares of 7 by 7 pixels, as far as they lie in the image: what the brightness is near a pixel, when
+/// one pixel is too noisy to tell.
+inline Image blurred(const Image& image) {
+    constexpr int radius = 3;
+    const auto along = [&](const Image& from, int dx, int dy) {
+        Image to(from.width(), from.height());
+        for (int y = 0; y < from.height(); ++y)
+            for (int x = 0; x < from.width(); ++x) {
+                DVec3 sum(0);
+                int count = 0;
+                for (int k = -radius; k <= radius; ++k) {
+                    const int u = x + k * dx, v = y + k * dy;
+                    if (u < 0 || v < 0 || u >= from.width() || v >= from.height()) continue;
+                    sum += DVec3(from(u, v));
+                    ++count;
+                }
+                to(x, y) = Rgb(sum / double(count));
+            }
+        return to;
+    };
+    return along(along(image, 1, 0), 0, 1);
+}
 
 /// Sum over a tile (column `tx`, row `ty` of `n` by `n`) of what `term(i)` says of each pixel (row * width + column).
 double over_tile(int width, int height, int n, int tx, int ty, const auto& term) {

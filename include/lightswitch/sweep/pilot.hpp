@@ -28,19 +28,34 @@ inline bool lacks_light(const Pilot& pilot, std::span<const Pilot> others) {
     });
 }
 
+/// What errors are to be relative to when there is no reference yet: the brightness near each pixel, from all pilots
+/// that lack no light, with weights in inverse proportion to their variances.
+inline Image common_scale(std::span<const Pilot> pilots) {
+    const Image any = pilots[0].images.mean();
+    std::vector<DVec3> sum(any.pixels().size(), DVec3(0));
+    double weights = 0;
+    for (const Pilot& p : pilots) {
+        if (lacks_light(p, pilots)) continue;
+        const double weight = 1 / (p.images.mean_variance() + 1e-12);
+        for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += weight * p.images.mean(i);
+        weights += weight;
+    }
+    Image mean = any;
+    if (weights > 0)
+        for (std::size_t i = 0; i < sum.size(); ++i) mean.pixels()[i] = Rgb(sum[i] / weights);
+    return blurred(mean);
+}
+
 /// The places of the pilots in the order of their inefficiency (variance, relative to what all see, times seconds),
 /// the best first; those that lack light come last.
 inline std::vector<std::size_t> by_inefficiency(std::span<const Pilot> pilots) {
+    const Image scale = common_scale(pilots);
     std::vector<bool> dark;
-    ImageMoments seen;
     for (const Pilot& p : pilots) dark.push_back(lacks_light(p, pilots));
-    for (std::size_t i = 0; i < pilots.size(); ++i)
-        if (!dark[i]) seen.add(pilots[i].images.mean());
-    const Image mean = seen.count() > 0 ? seen.mean() : pilots[0].images.mean();
     std::vector<double> inefficiency;
     std::vector<std::size_t> order;
     for (const Pilot& p : pilots) {
-        inefficiency.push_back(p.images.relative_variance(mean) * p.seconds);
+        inefficiency.push_back(p.images.relative_variance(scale) * p.seconds);
         order.push_back(order.size());
     }
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {

@@ -67,7 +67,10 @@ public:
         result.seconds = options_.seconds;
         std::vector<Course> courses(contenders_.size());
         for (int i = 0; i < options_.seeds && !options_.stop.stop_requested(); ++i) {
+            const double seeds_left = double(options_.seeds - 1 - i);
             replicate(reference, courses, i);
+            // Later seeds may take less than was planned.
+            done_ = std::max(done_, total_ - seeds_left * double(contenders_.size()) * options_.seconds);
             result.seeds += options_.stop.stop_requested() ? 0 : 1;
         }
         result.stopped = options_.stop.stop_requested();

@@ -76,6 +76,7 @@ inline std::string reference_text(const Reference& r, const std::optional<double
     text += r.second == r.first ? ", checked by other seeds of the same" : ", checked by " + r.second;
     text += "; its own relMSE is " + digits(r.relmse, 2) + " by the spread of its images";
     if (seen) text += ", and " + digits(*seen, 2) + " by what the best method's images tell";
+    if (seen && *seen > 2 * r.relmse) text += " (rare bright paths: it is worse than it knows)";
     text += ". The two parts differ by " + sweep_percent(r.ratio - 1) + " in the mean (" + digits(r.deviations, 2) +
             " deviations), and by " + digits(r.worst_tile, 2) + " deviations in the worst of 16 tiles";
     text += r.consistent() ? "."
