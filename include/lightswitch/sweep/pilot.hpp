@@ -5,7 +5,9 @@
 #include <lightswitch/sweep/contender.hpp>
 #include <lightswitch/sweep/image_moments.hpp>
 
+#include <algorithm>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace lightswitch::detail {
@@ -58,8 +60,8 @@ inline std::vector<std::size_t> by_inefficiency(std::span<const Pilot> pilots) {
         inefficiency.push_back(p.images.relative_variance(scale) * p.seconds);
         order.push_back(order.size());
     }
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        return dark[a] != dark[b] ? !dark[a] : inefficiency[a] < inefficiency[b];
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return std::pair(bool(dark[a]), inefficiency[a]) < std::pair(bool(dark[b]), inefficiency[b]);
     });
     return order;
 }
