@@ -36,6 +36,7 @@ run_samples() {
   if [ -x ../10_own_window ] && [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ]; then run ../10_own_window --frames 20; fi
   run ../lightswitch compare spheres.exr spheres-path.exr --report spheres.html
   run ../lightswitch verify furnace --methods path-nee,bdpt --report furnace-verdict.html
+  run ../lightswitch sweep cornell-spheres --size 64x64 --seconds 0.1 --report spheres-sweep.html
 
   echo "samples: the pictures are in $PWD"
   return $status

@@ -28,8 +28,8 @@
 namespace lightswitch::program {
 namespace {
 
-constexpr std::array<std::string_view, 9> commands{"render",     "view",   "merge",   "compare", "verify",
-                                                   "strategies", "replay", "methods", "info"};
+constexpr std::array<std::string_view, 10> commands{"render", "view",       "merge",  "compare", "verify",
+                                                    "sweep",  "strategies", "replay", "methods", "info"};
 /// CLI11's help, with a usage line that shows what must be given.
 class Help : public CLI::Formatter {
 public:
@@ -44,6 +44,7 @@ public:
                 "verify SCENE [OPTIONS]\n"
                 "       lightswitch verify SCENE --images FILES [OPTIONS]\n"
                 "       lightswitch verify --images FILES --against FILES [OPTIONS]");
+        if (command == "sweep") return usage("sweep SCENE [OPTIONS]");
         if (command == "strategies") return usage("strategies SCENE --output FILE [OPTIONS]");
         if (command == "replay") return usage("replay SCENE --pixel X,Y [OPTIONS]");
         if (command == "info") return usage("info SCENE [OPTIONS]");
@@ -107,7 +108,8 @@ int run_command(int argc, char** argv) {
         "Examples:\n"
         "  lightswitch render cornell-box --method path-nee --spp 64 --output box.png --output box.exr\n"
         "  lightswitch compare box.exr reference.exr --output difference.png\n"
-        "  lightswitch verify cornell-box --methods path-nee --reference path\n\n"
+        "  lightswitch verify cornell-box --methods path-nee --reference path\n"
+        "  lightswitch sweep cornell-box --report sweep.html\n\n"
         "\"lightswitch COMMAND --help\" explains the options of a command. Behind \"--\" stand only files, also those\n"
         "whose names begin with \"-\".");
 
@@ -116,6 +118,7 @@ int run_command(int argc, char** argv) {
     MergeOptions merge_options;
     CompareOptions compare_options;
     VerifyCommand verify_options;
+    SweepCommand sweep_options;
     StrategiesCommand strategies_options;
     ReplayCommand replay_options;
     SceneOptions info_options;
@@ -124,6 +127,7 @@ int run_command(int argc, char** argv) {
     CLI::App& merge_command = *app.add_subcommand("merge", "Join what several renders have made of one image");
     CLI::App& compare_command = *app.add_subcommand("compare", "Measure and show how images differ");
     CLI::App& verify_command = *app.add_subcommand("verify", "Tell whether methods have the same expected image");
+    CLI::App& sweep_command = *app.add_subcommand("sweep", "Measure every method's error over time");
     CLI::App& strategies_command =
         *app.add_subcommand("strategies", "Show what each strategy of bidirectional path tracing finds");
     CLI::App& replay_command = *app.add_subcommand("replay", "Tell how one sample of a pixel came about");
@@ -134,6 +138,7 @@ int run_command(int argc, char** argv) {
     add_merge(merge_command, merge_options);
     add_compare(compare_command, compare_options);
     add_verify(verify_command, verify_options);
+    add_sweep(sweep_command, sweep_options);
     add_strategies(strategies_command, strategies_options);
     add_replay(replay_command, replay_options);
     add_scene_options(info_command, info_options);
@@ -173,6 +178,7 @@ int run_command(int argc, char** argv) {
     if (&command == &verify_command) return verify(verify_options);
     const SceneOptions& scene = &command == &info_command         ? info_options
                                 : &command == &strategies_command ? strategies_options.scene
+                                : &command == &sweep_command      ? sweep_options.scene
                                 : &command == &replay_command     ? replay_options.scene
                                                                   : render_options.scene;
     if (scene.scene.empty())
@@ -180,6 +186,7 @@ int run_command(int argc, char** argv) {
                                 scene_endings(), list(stock::names)));
     if (&command == &info_command) return info(info_options);
     if (&command == &replay_command) return replay(replay_options);
+    if (&command == &sweep_command) return sweep(sweep_options);
     return &command == &strategies_command ? strategies(strategies_options) : render(render_options);
 }
 

@@ -64,6 +64,8 @@ void add_extra_outputs(std::vector<ExtraOutput>& outputs, std::string_view text)
     }
 }
 
+}  // namespace
+
 int parse_max_depth(std::string_view text) {
     const int depth = parse_int("--max-depth", text, -1);
     if (depth == 0)
@@ -71,8 +73,6 @@ int parse_max_depth(std::string_view text) {
             "--max-depth: 0 would show nothing; 1 is emission seen directly, 2 adds direct light, -1 is unlimited");
     return depth;
 }
-
-}  // namespace
 
 void add_outputs(CLI::App& app, std::vector<std::filesystem::path>& outputs, const std::string& help) {
     add_values(

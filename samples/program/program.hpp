@@ -6,6 +6,7 @@
 #include <lightswitch/method/extra_outputs.hpp>
 #include <lightswitch/render/render.hpp>
 #include <lightswitch/scene/build.hpp>
+#include <lightswitch/sweep/sweep_options.hpp>
 #include <lightswitch/verify/verify.hpp>
 
 #include <filesystem>
@@ -103,6 +104,17 @@ struct VerifyCommand {
     bool quiet = false;
 };
 
+struct SweepCommand {
+    SceneOptions scene;
+    std::vector<std::string> methods;  ///< without any: all that have an error
+    MethodOptions of_methods;          ///< each for those that have it
+    std::filesystem::path reference;   ///< an image; where it is empty, one is made
+    std::optional<int> max_depth;
+    SweepOptions options{.seconds = 0.25};
+    std::string report, csv;  ///< files, or empty; `csv` may be "-"
+    bool quiet = false;
+};
+
 struct ViewOptions {
     SceneOptions scene;
     std::string method = "path-nee", against;  ///< names; the second may be empty
@@ -156,6 +168,7 @@ int merge(const MergeOptions& options);
 int compare(const CompareOptions& options);
 int verify(const VerifyCommand& command);
 int strategies(const StrategiesCommand& command);
+int sweep(const SweepCommand& command);
 int view(const ViewOptions& options);
 int replay(const ReplayCommand& command);
 int info(const SceneOptions& options);

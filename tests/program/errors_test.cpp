@@ -38,20 +38,21 @@ std::vector<std::string> render(std::vector<std::string> more) {
 
 TEST_CASE("a command that is missing, unknown or misspelt") {
     const Folder workspace;
-    check_refused(workspace,
-                  {
-                      {{}, "name a command: render, view, merge, compare, verify, strategies, replay, methods, info"},
-                      {{"rendr"},
-                       "did you mean \"render\"?; known are render, view, merge, compare, verify, strategies, replay, "
-                       "methods, info"},
-                      {{"--bogus"}, "there is no option \"--bogus\""},
-                      {{"methods", "path"}, "there is no use for \"path\""},
-                      {{"--", "render"}, "name a command"},
-                      {{"render", "furnace", "-o", "x.png", "info"}, "there is no use for \"info\""},
-                      {{"render", "furnace", "--out", "x.png"}, "did you mean \"--output\"?"},
-                      {{"info"}, "name a scene"},
-                      {{"info", "furnace", "--spp", "3"}, "there is no option \"--spp\""},
-                  });
+    check_refused(
+        workspace,
+        {
+            {{}, "name a command: render, view, merge, compare, verify, sweep, strategies, replay, methods, info"},
+            {{"rendr"},
+             "did you mean \"render\"?; known are render, view, merge, compare, verify, sweep, strategies, replay, "
+             "methods, info"},
+            {{"--bogus"}, "there is no option \"--bogus\""},
+            {{"methods", "path"}, "there is no use for \"path\""},
+            {{"--", "render"}, "name a command"},
+            {{"render", "furnace", "-o", "x.png", "info"}, "there is no use for \"info\""},
+            {{"render", "furnace", "--out", "x.png"}, "did you mean \"--output\"?"},
+            {{"info"}, "name a scene"},
+            {{"info", "furnace", "--spp", "3"}, "there is no option \"--spp\""},
+        });
 }
 
 TEST_CASE("render: scenes and methods that do not exist") {

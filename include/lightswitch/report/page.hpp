@@ -141,6 +141,7 @@ svg text { fill: var(--muted); font-size: 12px; }
 svg .axis { stroke: var(--muted); fill: none; }
 svg .grid { stroke: var(--line); }
 svg .curve { fill: none; stroke-width: 2; stroke-linejoin: round; }
+svg .band { stroke: none; opacity: .22; }
 svg .ideal { fill: none; stroke-width: 1.25; stroke-dasharray: 5 4; opacity: .8; }
 svg .level { stroke: var(--muted); stroke-width: 1.5; stroke-dasharray: 2 3; }
 svg .bin { fill: var(--s0); }
@@ -400,12 +401,15 @@ const key = (i, text) => lineKey('curve', text, {stroke: color(i)}, marker(i, 13
 function errorChart(title, xTitle, column, width) {
   const curves = report.curves.map((curve, i) => ({
     i, name: curve.name,
-    points: curve.points.map(p => [p[column], p[2]]).filter(p => p[0] > 0 && p[1] > 0).sort((p, q) => p[0] - q[0]),
+    points: curve.points.map(p => [p[column], p[2], p[3], p[4]]).filter(p => p[0] > 0 && p[1] > 0)
+        .sort((p, q) => p[0] - q[0]),
   })).filter(curve => curve.points.length);
   if (!curves.length) return null;
-  const ideal = ([first], xEnd) => [first, [xEnd, first[1] * Math.sqrt(first[0] / xEnd)]];
+  const ideal = ([first], xEnd) => [first, [xEnd, first[1] * (first[0] / xEnd) ** report.power]];
   for (const curve of curves) curve.ideal = ideal(curve.points, curve.points[curve.points.length - 1][0]);
-  const all = curves.flatMap(curve => [...curve.points, ...curve.ideal]);
+  const banded = curve => curve.points.filter(p => p[2] > 0 && p[3] > 0);
+  const edges = curve => [...banded(curve).map(p => [p[0], p[2]]), ...banded(curve).reverse().map(p => [p[0], p[3]])];
+  const all = curves.flatMap(curve => [...curve.points, ...curve.ideal, ...edges(curve)]);
   const level = report.noise > 0 ? [report.noise] : [];
   const range = values => [Math.min(...values) / 1.25, Math.max(...values) * 1.25];
   const [x0, x1] = range(all.map(p => p[0])), [y0, y1] = range([...all.map(p => p[1]), ...level]);
@@ -416,16 +420,21 @@ function errorChart(title, xTitle, column, width) {
   const root = frame(width, title, xTitle, report.errorName, x, y, ticks(x0, x1), ticks(y0, y1));
   const path = points => 'M' + points.map(p => `${x(p[0]).toFixed(1)} ${y(p[1]).toFixed(1)}`).join('L');
   for (const v of level) root.append(svg('line', {class: 'level', x1: left, x2: width - right, y1: y(v), y2: y(v)}));
+  for (const curve of curves)
+    if (banded(curve).length > 1)
+      root.append(svg('path', {class: 'band', fill: color(curve.i), d: path(edges(curve)) + 'Z'}));
   for (const curve of curves) root.append(svg('path', {class: 'ideal', stroke: color(curve.i), d: path(curve.ideal)}));
   for (const curve of curves) {
     root.append(svg('path', {class: 'curve', stroke: color(curve.i), d: path(curve.points)}));
     for (const p of curve.points) {
       const dot = marker(curve.i, x(p[0]), y(p[1]));
-      dot.append(svg('title', {}, `${curve.name}: ${short(p[1])} at ${short(p[0])}`));
+      const band = p[2] > 0 ? `, ${short(p[2])} to ${short(p[3])}` : '';
+      dot.append(svg('title', {}, `${curve.name}: ${short(p[1])}${band} at ${short(p[0])}`));
       root.append(dot);
     }
   }
-  const list = element('ul', {class: 'keys'}, ...curves.map(c => key(c.i, c.name)), lineKey('ideal', '1/\u221aN'),
+  const list = element('ul', {class: 'keys'}, ...curves.map(c => key(c.i, c.name)),
+                       lineKey('ideal', report.power === 1 ? '1/N' : '1/\u221aN'),
                        ...level.map(v => lineKey('level', `noise of the reference: about ${short(v)}`)));
   return element('figure', {class: 'panel'}, element('figcaption', {}, title), list, root);
 }

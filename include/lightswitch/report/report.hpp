@@ -42,6 +42,7 @@ struct ReportMap {
 struct ReportCurve {
     struct Point {
         double seconds = 0, samples = 0, error = 0;
+        double low = 0, high = 0;  ///< a band around it; 0: none
     };
     std::string name;
     std::vector<Point> points;
@@ -68,7 +69,8 @@ struct Report {
     std::optional<std::size_t> reference{};  ///< index of the image that the others are compared with at first
     std::vector<ReportMap> maps{};
     std::vector<ReportCurve> curves{};
-    std::string error_name = "Error";         ///< what the curves show
+    std::string error_name = "Error";  ///< what the curves show
+    bool squared_errors = false;       ///< so that with independent samples they fall as 1 / N, and else as 1 / sqrt(N)
     std::optional<double> reference_noise{};  ///< the part of the errors that is its own, drawn as a level
     std::vector<ReportHistogram> histograms{};
     std::vector<ReportTable> tables{};
@@ -124,7 +126,8 @@ inline std::string report_json(const Report& report, KeptBits kept) {
         return ",\"width\":" + std::to_string(image.width()) + ",\"height\":" + std::to_string(image.height());
     };
     const auto point = [](const ReportCurve::Point& p) {
-        return "[" + json_number(p.seconds) + "," + json_number(p.samples) + "," + json_number(p.error) + "]";
+        const std::string band = p.low > 0 ? "," + json_number(p.low) + "," + json_number(p.high) : "";
+        return "[" + json_number(p.seconds) + "," + json_number(p.samples) + "," + json_number(p.error) + band + "]";
     };
     return "{\"bits\":" + std::to_string(static_cast<int>(kept)) +
            ",\"reference\":" + (report.reference ? std::to_string(*report.reference) : "null") + ",\"images\":" +
@@ -146,7 +149,7 @@ inline std::string report_json(const Report& report, KeptBits kept) {
                           return "{\"name\":" + json_text(curve.name) +
                                  ",\"points\":" + json_array(curve.points, point) + "}";
                       }) +
-           ",\"errorName\":" + json_text(report.error_name) +
+           ",\"errorName\":" + json_text(report.error_name) + ",\"power\":" + (report.squared_errors ? "1" : "0.5") +
            ",\"noise\":" + (report.reference_noise ? json_number(*report.reference_noise) : "null") +
            ",\"histograms\":" + json_array(report.histograms, report_histogram) + "}";
 }
