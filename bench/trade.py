@@ -23,7 +23,7 @@ The error (relMSE) that each method leaves of each stock scene, at 128 x 128 pix
 
 on a shared virtual machine with two cores: absolute times depend on the machine, and what stands beside each other much less, since
 methods take turns. Errors are means over {seeds} seeds, less the part of the reference's own noise; a dash is where a method has no image yet,
-or where its error is lost in that noise (`<`). The best of a column is bold; two are bold where they differ by less than two standard
+or where its error is lost in that noise (`<`). The best of a row is bold; two are bold where they differ by less than two standard
 errors. [performance.md](performance.md#methods-at-equal-time) has longer runs on one thread.
 
 A scene of one's own: `lightswitch sweep SCENE --report sweep.html` ([methods.md](methods.md)), or from code
