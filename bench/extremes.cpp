@@ -33,8 +33,8 @@ the same scene at its usual size. In brackets: the standard error in units of th
 seeds.
 
 FAILS    more than five standard errors, plus the relative rounding that the row allows, away from what it must be: by
-         chance once in a million figures. Also more than 5 % away when the errors seem small, which a method that misses
-         some light underestimates.
+         chance once in a million figures. Also more than 5 % away when the errors seem small, which a method that
+         misses some light underestimates.
 starves  the method finds the light of this row too rarely to be judged, which is as it should be: not measured.
 noisy    it should find it, but its standard error is above 3 %.
 refused  the scene has an error that says what is wrong with it, as it should.

@@ -1,7 +1,7 @@
 #pragma once
 
-// The rows of `extremes`: what is varied, how far, and what the mean of the image must be. Here those about size, detail
-// and light.
+// The rows of `extremes`: what is varied, how far, and what the mean of the image must be. Here those about size,
+// detail and light.
 
 #include <lightswitch/scene/stock.hpp>
 

@@ -71,7 +71,7 @@ TEST_CASE("sums are the same bits in any order and in any parts") {
     }
 }
 
-TEST_CASE("a sum errs by at most 2^-32 of its largest term for each") {
+TEST_CASE("a sum errs by at most 2^-64 of its largest term for each, and of squares by 2^-32") {
     std::mt19937_64 random(4);
     for (int round = 0; round < 300; ++round) {
         const std::vector<DVec3> terms = random_terms(random, 1 + random() % 100, -static_cast<int>(random() % 100),
@@ -86,7 +86,9 @@ TEST_CASE("a sum errs by at most 2^-32 of its largest term for each") {
             }
             largest_square = largest * largest;
             const auto n = static_cast<long double>(terms.size());
-            CHECK(std::abs(static_cast<long double>(sum.values()[c]) - values) <= n * largest * 0x1.01p-32L);
+            // And by its own rounding to a double, and that of the sum here.
+            const long double rounding = std::abs(values) * 0x1p-53L + n * n * largest * 0x1p-63L;
+            CHECK(std::abs(static_cast<long double>(sum.values()[c]) - values) <= n * largest * 0x1p-64L + rounding);
             CHECK(std::abs(static_cast<long double>(sum.squares()[c]) - squares) <= n * largest_square * 0x1.01p-32L);
         }
     }
@@ -97,6 +99,20 @@ TEST_CASE("floats of about one size are added exactly") {
     for (int i = 0; i < 1000; ++i) sum.add(DVec3(double(0.1f), double(0.7f), 3));
     CHECK(sum.values() == DVec3(1000 * double(0.1f), 1000 * double(0.7f), 3000));
     CHECK(sum.squares().z == 9000);
+}
+
+TEST_CASE("sums of floats that are multiplied by a power of two have the same digits") {
+    std::mt19937_64 random(6);
+    for (int round = 0; round < 300; ++round) {
+        std::vector<DVec3> terms = random_terms(random, 1 + random() % 100, -20, 12);
+        for (DVec3& term : terms) term = DVec3(Rgb(term));
+        const DVec3 sum = sum_of(terms).values();
+        for (const int k : {-80, -37, -20, -1, 1, 15, 31, 60, 80}) {
+            std::vector<DVec3> scaled = terms;
+            for (DVec3& term : scaled) term *= std::ldexp(1.0, k);
+            CHECK(sum_of(scaled).values() == sum * std::ldexp(1.0, k));
+        }
+    }
 }
 
 TEST_CASE("the largest number of terms has room, at the edge of a window") {

@@ -37,7 +37,10 @@ Deviation deviation(const SceneType& scene, const M& method, int samples, double
         sum += difference;
         sum_of_variances += error * error;
     }
-    result.whole = sum / std::sqrt(sum_of_variances);
+    // Roulette ends long paths once in a thousand times: what it takes may not have been met yet, and then there is no
+    // spread that tells of it. One sample of all is as uncertain.
+    const double event = expected / samples;
+    result.whole = sum / std::sqrt(sum_of_variances + event * event);
     result.bias = sum / double(image.pixels().size()) / expected;
     return result;
 }

@@ -272,7 +272,7 @@ bool add_samples(const SceneType& scene, std::vector<OutputSums>& sums, int samp
 
 /// Renders outputs of a scene, of the size of its image: layers for `save_layers`, in the order given, each as
 /// `render(scene, output, {.samples = samples}, settings)` would make it, to the bit (but the film rounds a channel to
-/// 2^-32 of the largest in its pixel, and values that are not finite in single precision are not counted). A camera ray
+/// 2^-64 of the largest in its pixel, and values that are not finite in single precision are not counted). A camera ray
 /// and the surface that it meets are found once for all of them. With the seed and sampling of an image, the rays are
 /// those of its first `samples` iterations: edges are filtered alike, as denoisers need it.
 ///

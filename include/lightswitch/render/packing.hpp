@@ -80,12 +80,9 @@ inline void unpack(ByteReader& in, const auto& set, std::size_t count) {
 }
 
 inline void pack_film(std::string& out, const Film& film) {
-    for (std::size_t c = 0; c < 6; ++c) {
+    for (std::size_t bin = 0; bin < PixelSums::bins; ++bin)
         pack(
-            out, [&](std::size_t i) { return film.sums()[i].coarse[c]; }, film.area());
-        pack(
-            out, [&](std::size_t i) { return film.sums()[i].fine[c]; }, film.area());
-    }
+            out, [&](std::size_t i) { return film.sums()[i].bin(bin); }, film.area());
     for (std::size_t k = 0; k < 2; ++k)
         pack(
             out, [&](std::size_t i) { return std::int64_t{film.windows()[i].of[k]}; }, film.area());
@@ -94,12 +91,9 @@ inline void pack_film(std::string& out, const Film& film) {
 inline void unpack_film(ByteReader& in, Film& film, std::uint64_t iterations) {
     std::vector<PixelSums> sums(film.area());
     std::vector<PixelSums::Windows> windows(film.area());
-    for (std::size_t c = 0; c < 6; ++c) {
+    for (std::size_t bin = 0; bin < PixelSums::bins; ++bin)
         unpack(
-            in, [&](std::size_t i, std::int64_t digits) { sums[i].coarse[c] = digits; }, film.area());
-        unpack(
-            in, [&](std::size_t i, std::int64_t digits) { sums[i].fine[c] = digits; }, film.area());
-    }
+            in, [&](std::size_t i, std::int64_t digits) { sums[i].bin(bin) = digits; }, film.area());
     for (std::size_t k = 0; k < 2; ++k)
         unpack(
             in,

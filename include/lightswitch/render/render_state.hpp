@@ -80,10 +80,8 @@ inline std::string first_difference(const std::vector<RenderFact>& theirs, const
 
 inline std::uint64_t checksum_of(const Film& film) {
     Checksum sum;
-    for (const PixelSums& pixel : film.sums()) {
-        for (const std::int64_t digits : pixel.coarse) sum.mix(static_cast<std::uint64_t>(digits));
-        for (const std::int64_t digits : pixel.fine) sum.mix(static_cast<std::uint64_t>(digits));
-    }
+    for (const PixelSums& pixel : film.sums())
+        for (std::size_t i = 0; i < PixelSums::bins; ++i) sum.mix(static_cast<std::uint64_t>(pixel.bin(i)));
     for (const PixelSums::Windows& windows : film.windows())
         sum.mix(static_cast<std::uint64_t>(windows.of[0] * 256 + windows.of[1]));
     return sum.value();
