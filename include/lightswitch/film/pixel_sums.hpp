@@ -21,15 +21,15 @@ namespace lightswitch {
 /// Summation", 2015, with three bins for the values and two for the squares, and integers for bins.)
 ///
 /// Let u(w) = 2^(32 w). The window w of a sum is the least for which all magnitudes are below u(w) 2^31, or
-/// `lowest_window`. `coarse` is the sum of the terms rounded to multiples of u(w), in that unit, and `fine` that of what
-/// rounding to multiples of u(w - 1) gives beyond, in that one, and `finest` the same of u(w - 2); together they are the
-/// sum of the terms rounded to the last of these. As one magnitude is at least u(w) / 2, each value errs by at most
-/// 2^-64 of the largest and each square by 2^-32, to both sides alike. When w grows by one, `coarse` becomes `fine`, and
-/// `fine` `finest`, and all that there is would be rounded to 0 in the new unit.
+/// `lowest_window`. `coarse` is the sum of the terms rounded to multiples of u(w), in that unit, and `fine` that of
+/// what rounding to multiples of u(w - 1) gives beyond, in that one, and `finest` the same of u(w - 2); together they
+/// are the sum of the terms rounded to the last of these. As one magnitude is at least u(w) / 2, each value errs by at
+/// most 2^-64 of the largest and each square by 2^-32, to both sides alike. When w grows by one, `coarse` becomes
+/// `fine`, and `fine` `finest`, and all that there is would be rounded to 0 in the new unit.
 ///
 /// So floats down to 2^-40 of the largest are added without any error, and their sum is rounded once: multiplied by a
-/// power of two they have the same digits. Multiplying by powers of two is exact, so that it makes no difference whether
-/// a compiler fuses products into sums. What is not finite makes the sum infinite for good.
+/// power of two they have the same digits. Multiplying by powers of two is exact, so that it makes no difference
+/// whether a compiler fuses products into sums. What is not finite makes the sum infinite for good.
 struct PixelSums {
     static constexpr std::uint64_t most_terms = std::numeric_limits<std::uint32_t>::max();
     /// The greatest has room for squares of sums of 2^32 floats.
