@@ -126,7 +126,7 @@ void measure(const std::string& name, const R& reconstructor, const Options& opt
                 ls::Mixed mixed;
                 const double more = bench::seconds_of([&] {
                     const auto denoise = [&](const ls::Image& image, const ls::Image& of_it) {
-                        return reconstructor.reconstruct(ls::NoisyImage{image, of_it, guides}, executor).image;
+                        return reconstructor.reconstruct(ls::NoisyImage{image, of_it, guides}, executor);
                     };
                     denoised = denoise(both, variance);
                     const ls::Image denoised_a = denoise(of_a, variance_a), denoised_b = denoise(of_b, variance_b);

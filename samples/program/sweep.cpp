@@ -101,9 +101,9 @@ int sweep(const SweepCommand& command) {
         print_note("cancelled before anything was measured: nothing is written");
         return Status::cancelled;
     }
-    std::ostringstream text;
-    text << result;
     if (!command.quiet) {
+        std::ostringstream text;
+        text << result;
         fmt::print(command.csv == "-" ? stderr : stdout, "{}", text.str());
         print_missing(result);
     }

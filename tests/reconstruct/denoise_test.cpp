@@ -39,9 +39,8 @@ TEST_CASE("reconstructors: less noise, the same for any number of threads, black
     const Image none;
     for_each_reconstructor([&](const auto& reconstructor) {
         const auto make = [&](const Image& image, int threads) {
-            return reconstructor
-                .reconstruct({image, none, image.width() == truth.width() ? guides : no_guides}, TbbExecutor(threads))
-                .image;
+            return reconstructor.reconstruct({image, none, image.width() == truth.width() ? guides : no_guides},
+                                             TbbExecutor(threads));
         };
         const Image once = make(noisy, 1);
         CHECK(relmse(once, truth) < relmse(noisy, truth) / 2);

@@ -126,7 +126,7 @@ public:
             return halves_[1].film().iterations() < fewest ? Image() : halves_[half].film().variance();
         };
         const auto make = [&](const Image& image, const Image& of_it) {
-            return reconstructor.reconstruct({image, of_it, guides}, executor_).image;
+            return reconstructor.reconstruct({image, of_it, guides}, executor_);
         };
         Mixed result;
         if (samples() < 2) {

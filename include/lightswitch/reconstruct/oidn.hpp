@@ -58,7 +58,7 @@ public:
         return clean;
     }
 
-    Reconstruction reconstruct(const NoisyImage& noisy, const Executor auto&) const {
+    Image reconstruct(const NoisyImage& noisy, const Executor auto&) const {
         detail::check(noisy);
         // Powers of two change no digit; the network's own range is that of half-precision numbers.
         const auto scale = static_cast<float>(detail::unit_scale(noisy.image));
@@ -66,7 +66,7 @@ public:
         for (std::size_t i = 0; i < scaled.pixels().size(); ++i) scaled.pixels()[i] = noisy.image.pixels()[i] * scale;
         Image result = filter(scaled, "color", &noisy.guides);
         for (Rgb& pixel : result.pixels()) pixel /= scale;
-        return {std::move(result), {}};
+        return result;
     }
 
 private:

@@ -25,19 +25,12 @@ struct NoisyImage {
     const Guides& guides;
 };
 
-/// What comes of it.
-struct Reconstruction {
-    Image image;
-    Image
-        variance;  ///< what is left of it, as the reconstructor believes; empty: it does not say. Tells nothing of bias
-};
-
 /// A reconstructor has a `name` and makes one image of another, on the threads of the executor. The same result for any
-/// number of them. Its expected image may be wrong in any way: `denoise` finds out by the samples.
+/// number of them. Its expected image may be wrong in any way: `mix` finds out by the samples.
 template <class R>
 concept Reconstructor = requires(const R reconstructor, const NoisyImage& noisy, const TbbExecutor& executor) {
     { R::name } -> std::convertible_to<std::string_view>;
-    { reconstructor.reconstruct(noisy, executor) } -> std::same_as<Reconstruction>;
+    { reconstructor.reconstruct(noisy, executor) } -> std::same_as<Image>;
 };
 
 namespace detail {

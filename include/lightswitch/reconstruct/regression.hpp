@@ -23,7 +23,7 @@ struct Regression {
     int radius = 9;       ///< of the windows, in pixels
     double strength = 2;  ///< difference, in standard deviations of the smoothed images, that lowers a weight to 1/e
 
-    Reconstruction reconstruct(const NoisyImage& noisy, const Executor auto& executor) const;
+    Image reconstruct(const NoisyImage& noisy, const Executor auto& executor) const;
 };
 
 namespace detail {
@@ -219,7 +219,7 @@ private:
 
 }  // namespace detail
 
-inline Reconstruction Regression::reconstruct(const NoisyImage& noisy, const Executor auto& executor) const {
+inline Image Regression::reconstruct(const NoisyImage& noisy, const Executor auto& executor) const {
     using detail::Plane;
     detail::check(noisy);
     const int width = noisy.image.width(), height = noisy.image.height();
@@ -256,10 +256,10 @@ inline Reconstruction Regression::reconstruct(const NoisyImage& noisy, const Exe
     Plane<float> weight(width, height);
     for (const auto& band : said) band->add_to(sum, weight);
 
-    Reconstruction result{.image = Image(width, height), .variance = {}};
+    Image result(width, height);
     for (std::size_t i = 0; i < area; ++i) {
         const Rgb value = weight.values[i] > 0 ? sum.values[i] / weight.values[i] : colour.values[i];
-        result.image.pixels()[i] = Rgb(DVec3(glm::max(value, Rgb(0))) / scale);
+        result.pixels()[i] = Rgb(DVec3(glm::max(value, Rgb(0))) / scale);
     }
     return result;
 }

@@ -90,13 +90,14 @@ inline std::string reference_text(const Reference& r, const std::optional<double
 inline std::string frontier_text(const Sweep& sweep) {
     std::string text;
     std::size_t last = sweep.methods.size();
-    for (const FrontierPoint& p : sweep.frontier()) {
+    const std::vector<FrontierPoint> frontier = sweep.frontier();
+    for (const FrontierPoint& p : frontier) {
         if (p.best == last) continue;
         text += (text.empty() ? "Best: " : "; ") + sweep.methods[p.best].name + " from " + digits(p.seconds, 2) + " s";
         last = p.best;
     }
     if (text.empty()) return "No error could be told from that of the reference.";
-    const FrontierPoint end = sweep.frontier().back();
+    const FrontierPoint& end = frontier.back();
     text += ". At " + digits(end.seconds) + " s";
     if (end.second)
         text += " " + sweep.methods[*end.second].name + " is next with " + digits(end.ratio, 2) + " times the error" +
