@@ -51,6 +51,7 @@ Rendered run_denoised(const AnyScene& any_scene, const AnyMethod& any_method, co
             const HalvedSession* running = nullptr;
             Settings settings = job.settings;
             settings.observer = [&](const Progress& progress) {
+                job.progress(progress, running->statistics().counts.rays);
                 job.observer(progress, {.statistics = running->statistics(), .state = {}, .image = {}});
             };
             HalvedSession session(scene, method, settings);

@@ -52,6 +52,8 @@ public:
     std::optional<RenderState> take() { return std::move(from_); }
     std::uint64_t rays_before() const { return rays_before_; }
 
+    /// Whether it is time to write it.
+    bool due() const { return !file_.empty() && now_.due(); }
     /// Between two iterations: writes it when it is time. A failure is a warning; later it is tried again.
     void observe(const Halt& halt);
     /// At the end. A failure is kept until `complain`, so that the images can be written before.

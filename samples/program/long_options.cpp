@@ -37,7 +37,9 @@ void add_long_options(CLI::App& app, RenderOptions& options) {
     seconds("--write-every", options.write_every, "write the images every so many seconds, too (default: at the end)");
     add_value(
         app, "--part", "K/N", [&](const std::string& text) { options.share = parse_share(text); },
-        "only the K-th of N shares of the samples, to --checkpoint;\n\"lightswitch merge\" joins them")
+        "only the K-th of N shares of the samples, to --checkpoint;\n\"lightswitch merge\" joins them. Started by "
+        "mpirun, the processes\n"
+        "share one render without it")
         ->group("Long renders");
 }
 

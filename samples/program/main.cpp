@@ -2,6 +2,7 @@
 
 #include "messages.hpp"
 #include "options.hpp"
+#include "ranks.hpp"
 #include "scene_files.hpp"
 #include "text.hpp"
 
@@ -171,6 +172,9 @@ int run_command(int argc, char** argv) {
         throw Error("name a command: " + list(commands) + "; see \"lightswitch --help\"");
     const CLI::App& command = *app.get_subcommands().front();
     refuse_leftovers(command);
+    if (rank_count() > 1 && &command != &render_command)
+        throw Error(fmt::format("{}: processes of an MPI job share only \"render\": start it without them",
+                                command.get_name()));
     if (&command == &methods_command) return list_methods();
     if (&command == &view_command) return view(view_options);
     if (&command == &merge_command) return merge(merge_options);
@@ -221,6 +225,7 @@ int main(int argc, char** argv) {
     occupy_standard_streams();
     std::signal(SIGXFSZ, SIG_IGN);  // a file that becomes too large is then a failed write, and an error
     std::set_terminate(end_by_uncaught);
+    const MpiJob job(argc, argv);
     try {
         const int status = run_command(argc, argv);
         if (std::fflush(stdout) != 0 || std::ferror(stdout)) {
@@ -229,9 +234,9 @@ int main(int argc, char** argv) {
         }
         return status;
     } catch (const std::bad_alloc&) {
-        print_error("there is not enough memory; a smaller --size or a smaller scene takes less");
+        print_error(last_words("there is not enough memory; a smaller --size or a smaller scene takes less"));
     } catch (const std::exception& error) {
-        print_error(error.what());
+        print_error(last_words(error.what()));
     }
     return user_error;
 }

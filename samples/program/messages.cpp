@@ -8,8 +8,11 @@
 namespace lightswitch::program {
 namespace {
 
+bool silent = false;
+
 /// One write, so that lines of several programs stay whole. Where standard error is gone, nobody is left to tell.
 void print(std::string_view kind, std::string_view message) {
+    if (silent) return;
     std::string line = "lightswitch: ";
     line.append(kind);
     for (const char c : message) line += c == '\n' || c == '\r' ? ' ' : c;
@@ -18,6 +21,8 @@ void print(std::string_view kind, std::string_view message) {
 }
 
 }  // namespace
+
+void silence_messages() { silent = true; }
 
 void print_error(std::string_view message) { print("error: ", message); }
 void print_warning(std::string_view message) { print("warning: ", message); }

@@ -6,6 +6,9 @@
 
 namespace lightswitch::program {
 
+/// Says nothing from now on: another process does.
+void silence_messages();
+
 void print_error(std::string_view message);
 void print_warning(std::string_view message);
 void print_note(std::string_view message);

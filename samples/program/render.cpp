@@ -89,17 +89,52 @@ std::string summary_line(const AnyMethod& method, const Rendered& rendered, cons
         text += fmt::format(" (of the samples {:.2g} %), denoised by {}, {:.0f} % of the detail from samples",
                             100 * denoising.mixed.relative_error_of_samples, denoising.denoiser,
                             100 * denoising.mixed.detail_from_samples);
+    if (rendered.sharing.ranks > 1)
+        text += fmt::format(", {} processes, which waited {:.2g} % of the time", rendered.sharing.ranks,
+                            100 * rendered.sharing.most_seconds_waited / statistics.seconds);
     if (exposure) text += fmt::format(", exposure {:.4g} stops", *exposure);
     for (std::size_t i = 0; i < options.outputs.size(); ++i)
         text += (i == 0 ? "; wrote " : ", ") + options.outputs[i].string();
     return text + "\n";
 }
 
+/// What a rank of a job that is not the first does of a command: its share of the iterations, and nothing else.
+RenderOptions of_this_rank(RenderOptions options) {
+    if (is_root()) return options;
+    options.outputs.clear();
+    options.extra.clear();
+    options.stats.clear();
+    options.checkpoint.clear();
+    options.quiet = true;
+    return options;
+}
+
+void check_for_ranks(const RenderOptions& options, const AnyMethod& method) {
+    if (rank_count() == 1) return;
+    if (!options.denoise.empty())
+        throw Error("--denoise: the halves of a render that is denoised are not shared by processes of an MPI job");
+    if (!options.checkpoint.empty() && has_history(method))
+        throw Error(
+            fmt::format("--checkpoint: each iteration of {} goes on from the one before, in every process of the job; "
+                        "leave it out, or render with --checkpoint and a --seed of its own per process and merge",
+                        method_name(method)));
+}
+
+/// In the rounds of a job: not longer than half of what is to be done from time to time.
+double longest_round(const RenderOptions& options) {
+    double longest = 10;
+    if (!options.checkpoint.empty()) longest = std::min(longest, options.every / 2);
+    if (options.write_every > 0) longest = std::min(longest, options.write_every / 2);
+    return longest;
+}
+
 }  // namespace
 
-int render(const RenderOptions& options) {
-    AnyMethod method = find_method(options.method, "--method");
-    const Outputs outputs = checked_outputs(options);
+int render(const RenderOptions& asked) {
+    AnyMethod method = find_method(asked.method, "--method");
+    const Outputs outputs = checked_outputs(asked);
+    check_for_ranks(asked, method);
+    const RenderOptions options = of_this_rank(asked);
     const LoadedScene loaded = load_scene(options.scene, options.quiet);
     outputs.refuse_inputs(loaded.summary.files);
     const Size size = loaded.summary.size;
@@ -109,12 +144,13 @@ int render(const RenderOptions& options) {
     set_path_length(method, path_length(loaded.summary, options.max_depth, options.rr_depth));
 
     Budget limits = budget(options, loaded.summary);
-    const Span span = span_of(options, limits, method);
+    const Span span = span_of(asked, limits, method);
     Checkpoint checkpoint(options, span);
     Denoising denoising;
     if (!options.denoise.empty()) denoising.denoiser = choose_denoiser(options.denoise);
     const bool denoised = !denoising.denoiser.empty();
 
+    Now image_time(options.write_every);
     Cancellation cancellation;
     ProgressLine line(!options.quiet);
     const bool error_alone = limits.samples == 0 && limits.seconds == 0;
@@ -128,7 +164,6 @@ int render(const RenderOptions& options) {
             write_image(output, image, {.exposure = exposure.value_or(0)}, layers);
         return exposure;
     };
-    Now image_time(options.write_every);
     const auto write_meanwhile = [&](Image image) {
         try {
             write_images(std::move(image));
@@ -143,23 +178,28 @@ int render(const RenderOptions& options) {
                          .sampling = options.sampling,
                          .stop = cancellation.token(),
                          .first_iteration = span.begin},
+            .progress = [&](const Progress& progress,
+                            std::uint64_t rays) { line.update(progress, rays - checkpoint.rays_before()); },
             .observer =
                 [&](const Progress& progress, const Halt& halt) {
-                    line.update(progress, halt.statistics.counts.rays - checkpoint.rays_before());
                     stays_black = error_alone && progress.iterations >= most_black_samples &&
                                   std::isinf(progress.film.relative_error());
                     if (stays_black) cancellation.stop();
                     checkpoint.observe(halt);
                     if (image_time.due()) write_meanwhile(halt.image());
                 },
+            .due = [&] { return checkpoint.due() || image_time.due(); },
+            .longest_round = longest_round(asked),
             .from = checkpoint.take(),
             .from_where = detail::file_origin(options.checkpoint),
             .content = options.checkpoint.empty() ? "" : content_of(options.scene, loaded.summary),
             .end = [&](const Halt& halt) { checkpoint.end(halt); }};
+    meet();
     Rendered rendered = denoised ? run_denoised(loaded.scene, method, job, layers, denoising)
                                  : run(loaded.scene, method, std::move(job));
     line.clear();
 
+    if (!is_root()) return success;
     RenderStatistics& statistics = rendered.statistics;
     if (stays_black) {
         statistics.cancelled = false;  // by nobody

@@ -2,6 +2,8 @@
 
 // One render by one method, whichever scene and method were chosen.
 
+#include "ranks.hpp"
+
 #include <lightswitch/compiled.hpp>
 #include <lightswitch/method/any_method.hpp>
 #include <lightswitch/method/extra_outputs.hpp>
@@ -26,8 +28,13 @@ struct Halt {
 struct Job {
     Budget budget;  ///< seconds count what was rendered before, too
     Settings settings;
-    /// Called on the rendering thread after every iteration.
+    /// Called on the rendering thread after every iteration, with the number of rays; where ranks render together, on
+    /// rank 0 after every round.
+    std::function<void(const Progress&, std::uint64_t rays)> progress;
+    /// Called then, or, where ranks render together, whenever rank 0 has all; that it gets when `due` says so.
     std::function<void(const Progress&, const Halt&)> observer;
+    std::function<bool()> due = {};
+    double longest_round = 10;  ///< seconds, of ranks
     /// From where to go on, if from anywhere, and what the scene holds, as a text.
     std::optional<RenderState> from{};
     Origin from_where{};
@@ -41,6 +48,7 @@ struct Rendered {
     Image image;  ///< black when there are no iterations
     RenderStatistics statistics;
     double estimated_error = 0;  ///< `Film::relative_error`
+    Sharing sharing{};
 };
 
 /// Renders until the budget is spent or the stop token asks for an end. Throws `Error` when the job cannot go on from

@@ -48,6 +48,7 @@ std::string statistics_json(const LoadedScene& loaded, const AnyMethod& method, 
               {"rays_per_second", per_second(double(counts.rays))},
               {"samples_per_second", per_second(double(statistics.iterations) * width * height)},
               {"threads", statistics.threads},
+              {"processes", rendered.sharing.ranks},
               {"seed", options.seed},
               {"sampler", name(options.sampling)},
               {"max_depth", nullptr},
@@ -85,6 +86,11 @@ std::string statistics_json(const LoadedScene& loaded, const AnyMethod& method, 
         json["estimated_error_of_samples"] = denoising.mixed.relative_error_of_samples;
         json["estimated_error_of_denoised"] = denoising.mixed.relative_error_of_denoised;
         json["detail_from_samples"] = denoising.mixed.detail_from_samples;
+    }
+    if (const Sharing& sharing = rendered.sharing; sharing.ranks > 1) {
+        json["gatherings"] = sharing.gatherings;
+        json["most_bytes_sent"] = sharing.most_bytes_sent;
+        json["most_seconds_waited"] = sharing.most_seconds_waited;
     }
     for (const auto& [key, value] : statistics.of_method) json[key] = value;
     json["embree_version"] = RTC_VERSION_STRING;

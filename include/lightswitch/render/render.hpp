@@ -101,6 +101,10 @@ public:
     /// The iterations that the film holds.
     const IterationSet& made() const { return made_; }
 
+    /// Goes on from that iteration, or the first one behind it that has not been made: those between are left to
+    /// others, as with `Settings::first_iteration`.
+    void begin_at(std::uint64_t iteration) { settings_.first_iteration = iteration; }
+
     // What render/checkpoint.hpp is made of.
     /// What the method keeps from one iteration to the next, as bytes. Throws `Error` when it does not say.
     std::string method_state() const;

@@ -116,7 +116,7 @@ inline void keep_all_but_film(auto& archive, RenderState& state, std::uint32_t& 
 }
 
 inline constexpr std::string_view state_magic = "lightswitch state\n";
-inline constexpr std::uint32_t state_format = 1;
+inline constexpr std::uint32_t state_format = 2;
 inline constexpr std::uintmax_t most_state_bytes = std::uintmax_t(1) << 36;
 
 /// What remains of the bytes of a whole file between the header and the checksum. Throws `Error` for a file of another
@@ -140,11 +140,8 @@ inline std::string_view checked_body(std::string_view bytes, const Origin& where
     return summed.substr(head);
 }
 
-}  // namespace detail
-
-/// Writes a state so that the file is either as it was or complete, also after a power failure. Throws `Error` as
-/// `write_file_atomically` does.
-inline void save_state(const RenderState& state, const std::filesystem::path& file) {
+/// A state as the bytes of a file.
+inline std::string bytes_of(const RenderState& state) {
     RenderState kept{.facts = state.facts,
                      .kind = state.kind,
                      .iterations = state.iterations,
@@ -153,28 +150,27 @@ inline void save_state(const RenderState& state, const std::filesystem::path& fi
                      .method_state = state.method_state,
                      .has_history = state.has_history,
                      .film = Film(1, 1)};
-    std::string bytes(detail::state_magic);
-    detail::put_little_endian(bytes, detail::state_format);
+    std::string bytes(state_magic);
+    put_little_endian(bytes, state_format);
     const std::size_t size_at = bytes.size();
-    detail::put_little_endian(bytes, std::uint64_t{0});
-    detail::ArchiveWriter writer(bytes);
+    put_little_endian(bytes, std::uint64_t{0});
+    ArchiveWriter writer(bytes);
     auto width = static_cast<std::uint32_t>(state.film.width()),
          height = static_cast<std::uint32_t>(state.film.height());
-    detail::keep_all_but_film(writer, kept, width, height);
-    detail::pack_film(bytes, state.film);
+    keep_all_but_film(writer, kept, width, height);
+    pack_film(bytes, state.film);
     std::string size;
-    detail::put_little_endian(size, static_cast<std::uint64_t>(bytes.size() + 8));
+    put_little_endian(size, static_cast<std::uint64_t>(bytes.size() + 8));
     bytes.replace(size_at, size.size(), size);
-    detail::put_little_endian(bytes, detail::Checksum::of(bytes));
-    write_file_durably(file, bytes);
+    put_little_endian(bytes, Checksum::of(bytes));
+    return bytes;
 }
 
-/// Reads a state. Throws `Error` when there is no such file, it is no state, or it is damaged in any way.
-inline RenderState load_state(const std::filesystem::path& file) {
-    const Origin where = detail::file_origin(file);
-    const FileBytes bytes(file, detail::most_state_bytes);
-    detail::ByteReader in(detail::checked_body(bytes.view(), where), file.string());
-    detail::ArchiveReader reader(in);
+/// The state that those bytes are, which come from `where`. Throws `Error` when they are no state, or are damaged in
+/// any way.
+inline RenderState state_from(std::string_view bytes, const Origin& where) {
+    ByteReader in(checked_body(bytes, where), where.file);
+    ArchiveReader reader(in);
     RenderState state{.facts = {},
                       .kind = {},
                       .iterations = {},
@@ -184,12 +180,26 @@ inline RenderState load_state(const std::filesystem::path& file) {
                       .film = Film(1, 1)};
     std::uint32_t width = 0, height = 0;
     return at_place(where, [&] {
-        detail::keep_all_but_film(reader, state, width, height);
+        keep_all_but_film(reader, state, width, height);
         Image::check_size(width, height);
         state.film = Film(static_cast<int>(width), static_cast<int>(height));
-        detail::unpack_film(in, state.film, state.iterations.count());
+        unpack_film(in, state.film, state.iterations.count());
         return std::move(state);
     });
+}
+
+}  // namespace detail
+
+/// Writes a state so that the file is either as it was or complete, also after a power failure. Throws `Error` as
+/// `write_file_atomically` does.
+inline void save_state(const RenderState& state, const std::filesystem::path& file) {
+    write_file_durably(file, detail::bytes_of(state));
+}
+
+/// Reads a state. Throws `Error` when there is no such file, it is no state, or it is damaged in any way.
+inline RenderState load_state(const std::filesystem::path& file) {
+    const FileBytes bytes(file, detail::most_state_bytes);
+    return detail::state_from(bytes.view(), detail::file_origin(file));
 }
 
 /// Adds the iterations of another render of the same image: the result is, to the last bit, that of a render of all of
