@@ -95,10 +95,15 @@ public:
         return {positions[a], positions[b], positions[c]};
     }
 
-    /// Builds the acceleration structure. `robust` asks Embree for its watertight intersection test.
+    /// Builds the acceleration structure, also anew. `robust` asks Embree for its watertight intersection test.
     void commit(bool robust = false) {
         const auto start = std::chrono::steady_clock::now();
-        if (robust) rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
+        if (robust) {
+            rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
+            // Where it is built already, other flags alone are no reason for Embree to build it anew.
+            for (std::uint32_t i = 0; build_seconds_ > 0 && i < geometries_; ++i)
+                rtcCommitGeometry(rtcGetGeometry(scene_.get(), i));
+        }
         rtcCommitScene(scene_.get());
         device_->check("building the acceleration structure of " + std::to_string(geometries_) + " shapes");
         build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

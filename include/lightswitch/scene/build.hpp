@@ -7,6 +7,7 @@
 #include <lightswitch/scene/build_materials.hpp>
 #include <lightswitch/scene/check.hpp>
 #include <lightswitch/scene/description.hpp>
+#include <lightswitch/scene/near_view.hpp>
 #include <lightswitch/scene/rounding.hpp>
 #include <lightswitch/scene/scene.hpp>
 
@@ -17,7 +18,8 @@ namespace lightswitch {
 /// How a scene is built.
 struct BuildOptions {
     std::string embree_config;  ///< Embree's device string, for example "threads=2"
-    bool robust = false;        ///< Embree's watertight test in any case (slower); otherwise only if a mesh has needles
+    /// Embree's watertight test in any case (slower); or else where a mesh has needles, or `is_near_view`.
+    bool robust = false;
 };
 
 namespace detail {
@@ -44,8 +46,7 @@ public:
         data_.name = description.name;
         data_.space = choose_render_space(parts, bounds);
         data_.radius = bounds.radius(data_.space);
-        const detail::MaterialAssembly<typename BuiltScene::Data> materials(description, data_);
-        materials_ = materials.indices();
+        materials_ = detail::MaterialAssembly<typename BuiltScene::Data>(description, data_).indices();
         for (const auto& source : description.sources) add(source.source, source.origin);
         detail::GroupRecord in_place = begin_group(data_.space, bounds);
         for (const auto& shape : description.shapes) add(shape);
@@ -53,16 +54,17 @@ public:
         detail::choose_lights(data_, pending_);
         detail::refuse_dim(data_.emitters, data_.name);
         embree::Accelerator accelerator = end_group(in_place);
-        auto& statistics = data_.statistics;
+        const DVec3 eye(description.camera.to_world[3]);
+        make_robust_if_near(accelerator, in_place.mesh_count, Vec3(data_.space.point(eye)), data_.statistics.robust);
+        SceneStatistics& statistics = data_.statistics;
         detail::Placement placement = description.instances.empty()
                                           ? detail::Placement{std::move(accelerator), {}}
                                           : place_instances(description, std::move(in_place), std::move(accelerator));
         statistics.spheres = data_.spheres.size();
         statistics.embree_bytes = device_->memory();
-        statistics.scene_bytes = static_cast<std::int64_t>(
-            data_.meshes.size() * sizeof(MeshRecord) + data_.spheres.size() * sizeof(SphereRecord) +
-            data_.shading_normals.size() * sizeof(data_.shading_normals[0]) + data_.uvs.size() * sizeof(data_.uvs[0]) +
-            ((std::get<std::vector<L>>(data_.lights).size() * sizeof(L)) + ... + 0));
+        const auto bytes = [](const auto& list) { return std::int64_t(list.size() * sizeof(list[0])); };
+        statistics.scene_bytes = bytes(data_.meshes) + bytes(data_.spheres) + bytes(data_.shading_normals) +
+                                 bytes(data_.uvs) + (bytes(std::get<std::vector<L>>(data_.lights)) + ... + 0);
         statistics.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         return {std::move(data_), std::move(placement), description.camera, description.film};
     }
