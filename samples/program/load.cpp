@@ -3,6 +3,7 @@
 #include "messages.hpp"
 #include "scene_files.hpp"
 #include "text.hpp"
+#include "warnings.hpp"
 
 #include <lightswitch/compiled.hpp>
 #include <lightswitch/load/scene_file.hpp>
@@ -113,7 +114,9 @@ LoadedScene load_scene(const SceneOptions& options, bool quiet, StandIns tell_st
     SceneSummary summary = summarize(description);
     summary.stand_ins = std::move(stand_ins);
     const DivertedOutput embree_may_talk;
-    return {std::move(summary), build_any(description, options.build)};
+    AnyScene scene = build_any(description, options.build);
+    if (!quiet) warn_about_coincident_lights(scene, description);
+    return {std::move(summary), std::move(scene)};
 }
 
 PathLength path_length(const SceneSummary& summary, const std::optional<int>& max_depth,

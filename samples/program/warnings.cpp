@@ -3,7 +3,11 @@
 #include "messages.hpp"
 #include "method_notes.hpp"
 
+#include <lightswitch/scene/coincident_lights.hpp>
+
 #include <fmt/format.h>
+
+#include <algorithm>
 
 namespace lightswitch::program {
 namespace {
@@ -28,7 +32,39 @@ void warn_about_clipping(const LoadedScene& loaded) {
                         camera.near_clip, camera.far_clip, nearest, farthest));
 }
 
+/// Where the emitters of a scene come from, in their order.
+std::vector<Origin> origins_of_emitters(const LibraryDescription& description) {
+    std::vector<Origin> origins;
+    for (const auto& source : description.sources) origins.push_back(source.origin);
+    const auto add = [&](const auto& shapes) {
+        for (const auto& shape : shapes)
+            if (shape.emission) origins.push_back(shape.origin);
+    };
+    add(description.shapes);
+    for (const auto& instance : description.instances) add(description.groups[instance.group].shapes);
+    return origins;
+}
+
 }  // namespace
+
+void warn_about_coincident_lights(const AnyScene& scene, const LibraryDescription& description) {
+    const auto found = std::visit([](const auto& built) { return coincident_lights(built); }, scene);
+    if (found.empty()) return;
+    const std::vector<Origin> origins = origins_of_emitters(description);
+    const auto emitters = std::visit([](const auto& built) { return built.emitters().size(); }, scene);
+    constexpr std::size_t most = 5;
+    for (std::size_t i = 0; i < std::min(found.size(), most); ++i) {
+        // A lamp of nothing but triangles without area is no emitter.
+        const bool known = origins.size() == emitters;
+        print_warning(
+            fmt::format("{}about {:.0f} % of this light lies in another surface, so that rounding decides where it is "
+                        "seen, and methods "
+                        "differ: move it off by a thousandth of its size",
+                        known ? origins[found[i].emitter].prefix() : fmt::format("light {}: ", found[i].emitter + 1),
+                        100 * found[i].share));
+    }
+    if (found.size() > most) print_warning(fmt::format("and so do {} more lights", found.size() - most));
+}
 
 void warn_about_scene(const LoadedScene& loaded, std::string_view method) {
     const std::size_t dirac =

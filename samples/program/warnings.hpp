@@ -14,6 +14,9 @@ namespace lightswitch::program {
 /// What the method will not see of the scene, and what nobody will.
 void warn_about_scene(const LoadedScene& loaded, std::string_view method);
 
+/// Lamps that lie in other surfaces.
+void warn_about_coincident_lights(const AnyScene& scene, const LibraryDescription& description);
+
 /// Path lengths that are asked for and of no use to the method.
 void warn_about_depths(const AnyMethod& method, const std::optional<int>& max_depth,
                        const std::optional<int>& rr_depth);
