@@ -75,8 +75,8 @@ std::vector<PlantedBug> method_bugs() {
     roulette("roulette compensated twice", PathMistake::roulette_compensated_twice, 3);
 
     const auto chains = [&](std::string_view name, ChainMistake mistake) {
-        bugs.push_back({name, "cornell-box", 2, [=] {
-                            const LibraryDescription description = small_box();
+        bugs.push_back({name, "wall-and-shadow", 2, [=] {
+                            const LibraryDescription description = wall_and_shadow();
                             return std::pair(on_diffuse_scene(description, PlantedMlt{mistake}),
                                              library_nee(description));
                         }});

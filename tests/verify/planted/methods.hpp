@@ -218,7 +218,7 @@ struct PlantedMlt {
             return mistake == ChainMistake::left_counted_twice ? 1 : ChainRules::kept(light, limit / 20);
         }
         double acceptance(double current, double proposed) const {
-            if (mistake == ChainMistake::every_step_accepted && proposed > 0) return 1;
+            if (mistake == ChainMistake::every_step_accepted) return 1;
             return ChainRules::acceptance(current, proposed);
         }
         ChainRules::Start start(double energy, double of_chain, double u) const {
