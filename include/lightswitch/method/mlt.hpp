@@ -233,12 +233,12 @@ private:
     }
 
     /// Mutations are worth their time where much is left to them: the more paths tell of it, the shorter the chains.
-    auto planned(const State& state) const {
+    State::Plan planned(const State& state) const {
         const auto& known = refine && state.all.paths > 0 ? state.all : state.before;
         const double paths = double(known.paths), share = std::clamp(known.left / (paths * state.mean), least, 1.0);
         const double per_path = std::max(double(mutations), 1e-6) * std::min(1.0, std::sqrt(share / few));
         const double length = per_path * paths / std::max(chains_per_find * known.paths_left(), 1.0);
-        typename State::Plan plan;
+        State::Plan plan;
         plan.length = static_cast<int>(std::clamp(length, double(shortest), double(longest)));
         plan.energy = share * state.mean * double(plan.length) / per_path;
         return plan;
