@@ -224,8 +224,8 @@ TEST_CASE("help: the options of single methods are a group of their own") {
         const std::string help = run(workspace, {command, "--help"}).out;
         const std::size_t group = help.find("\nOptions of single methods:\n");
         REQUIRE(group != std::string::npos);
-        for (const char* option : {"--radius PIXELS", "--alpha A", "--photon-paths N", "--final-gather", "--chains N",
-                                   "--bootstrap N", "--large-steps P", "--no-refine"})
+        for (const char* option : {"--radius PIXELS", "--alpha A", "--photon-paths N", "--final-gather",
+                                   "--bootstrap N", "--mutations N", "--no-refine"})
             CHECK(help.find(option, group) != std::string::npos);
         std::istringstream lines(help);
         for (std::string line; std::getline(lines, line);) CHECK_MESSAGE(line.size() <= 120, line);
