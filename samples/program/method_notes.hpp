@@ -32,8 +32,8 @@ inline constexpr std::array method_notes{
                 "be sharp at once: its error falls slowly; glossy surfaces are noisy"},
     MethodNotes{Vcm::name, "all light transport: bdpt that also merges nearby paths, so caustics in mirrors, too",
                 "be exact at once where it merges; takes memory for all light paths of an iteration"},
-    MethodNotes{Mlt::name, "all light transport, by chains that stay where light is found: hidden lamps, caustics",
-                "spread its noise evenly: errors are blotches"},
+    MethodNotes{Mlt::name, "all light transport: bdpt whose brightest finds chains spread out: caustics, rare light",
+                "be better than bdpt where nothing is rare; what is left of rare light is blotches"},
 };
 
 /// The notes on a method of `AnyMethod`.

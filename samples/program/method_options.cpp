@@ -24,14 +24,11 @@ void for_each_setting(auto&& f) {
         "--final-gather", "final_gather", &MethodOptions::final_gather,
         [](auto& m) -> auto& requires requires { m.final_gather; } { return m.final_gather; });
     f(
-        "--chains", "max_chains", &MethodOptions::chains,  // small images have fewer: "chains" tells how many
-        [](auto& m) -> auto& requires requires { m.chains; } { return m.chains; });
-    f(
         "--bootstrap", "bootstrap", &MethodOptions::bootstrap,
         [](auto& m) -> auto& requires requires { m.bootstrap; } { return m.bootstrap; });
     f(
-        "--large-steps", "large_steps", &MethodOptions::large_steps,
-        [](auto& m) -> auto& requires requires { m.large_steps; } { return m.large_steps; });
+        "--mutations", "mutations_per_pixel", &MethodOptions::mutations,
+        [](auto& m) -> auto& requires requires { m.mutations; } { return m.mutations; });
     f(
         "--no-refine", "refine", &MethodOptions::refine,
         [](auto& m) -> auto& requires requires { m.refine; } { return m.refine; });
@@ -88,23 +85,19 @@ void add_method_options(CLI::App& app, MethodOptions& options) {
            "photon: one more bounce before light is gathered, direct light by\nsampling the lamps (default: not)")
         ->group("Options of single methods");
     add(
-        "--chains", "N", [&](const std::string& text) { options.chains = parse_int("--chains", text, 1, 1 << 20); },
-        "mlt: number of Markov chains (default: 1024), at most one per 16\npixels");
-    add(
         "--bootstrap", "N",
         [&](const std::string& text) { options.bootstrap = parse_int("--bootstrap", text, 1, 1 << 24); },
-        "mlt: number of independent paths to start from (default: 65536)");
+        "mlt: number of paths that tell beforehand how bright the image is\n(default: 32768)");
     add(
-        "--large-steps", "P",
+        "--mutations", "N",
         [&](const std::string& text) {
-            options.large_steps = parse_float("--large-steps", text, 0, true);
-            if (*options.large_steps > 1) throw Error("--large-steps: a probability is at most 1");
+            options.mutations = parse_float("--mutations", text, 0, true);
+            if (*options.mutations > 1000) throw Error("--mutations: it must be at most 1000");
         },
-        "mlt: probability of a mutation that forgets the path, above 0, at\nmost 1 (default: 0.3)");
+        "mlt: mutations per pixel and iteration where much is left to\nchains; fewer elsewhere (default: 0.5)");
     app.add_flag_callback(
            "--no-refine", [&] { options.refine = false; },
-           "mlt: brightness by the first paths alone, which makes every\niteration unbiased (default: by all large "
-           "steps)")
+           "mlt: plan chains by the first paths alone (default: by all\niterations before)")
         ->group("Options of single methods");
 }
 

@@ -213,10 +213,10 @@ void add_render(CLI::App& app, RenderOptions& options) {
         "build_seconds, embree_bytes, scene_bytes, camera, embree_version, lightswitch_version, cancelled.\n"
         "--denoise adds denoiser, denoise_seconds, estimated_error_of_samples, estimated_error_of_denoised (unmixed)\n"
         "and detail_from_samples.\n"
-        "Methods add their settings (initial_radius_pixels, alpha, paths_per_pixel, final_gather, max_chains,\n"
-        "bootstrap, large_steps, refine) and what they counted, in the last iteration (photons, photon_map_bytes,\n"
-        "light_vertices, radius_pixels) or in all (chains, mutations, acceptance_rate, large_step_rate,\n"
-        "normalization).");
+        "Methods add their settings (initial_radius_pixels, alpha, paths_per_pixel, final_gather, bootstrap,\n"
+        "mutations_per_pixel, refine) and what they counted, in the last iteration (photons, photon_map_bytes,\n"
+        "light_vertices, radius_pixels) or in all (chains, mutations, acceptance_rate, chain_length,\n"
+        "chain_energy, chain_share, coverage).");
 }
 
 void add_view(CLI::App& app, ViewOptions& options) {

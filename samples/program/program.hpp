@@ -44,8 +44,8 @@ struct MethodOptions {
     std::optional<float> alpha;          ///< of the same
     std::optional<double> photon_paths;  ///< light paths per pixel and iteration, of photon
     std::optional<bool> final_gather;    ///< of photon
-    std::optional<int> chains, bootstrap;
-    std::optional<float> large_steps;  ///< probability, of mlt as what is around it
+    std::optional<int> bootstrap;        ///< paths, of mlt as what is below
+    std::optional<float> mutations;      ///< per pixel and iteration
     std::optional<bool> refine;
 };
 

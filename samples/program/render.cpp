@@ -210,6 +210,7 @@ int render(const RenderOptions& asked) {
         return Status::cancelled;
     }
     warn_about_values(statistics.counts, rendered.image);
+    warn_about_coverage(statistics);
     if (denoised) {
         warn_about_denoising(denoising, statistics.iterations);
         // Guides that nobody asked for are no layers.

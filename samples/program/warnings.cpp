@@ -107,6 +107,15 @@ void warn_about_values(const RenderCounts& counts, const Image& image) {
         first.pixel / width, first.iteration, first.seed));
 }
 
+void warn_about_coverage(const RenderStatistics& statistics) {
+    for (const auto& [key, value] : statistics.of_method)
+        if (key == "coverage" && value < 0.95)
+            print_warning(fmt::format(
+                "{:.0f} % of the light rests on few rare paths: its brightness is not known yet, nor is the "
+                "error there; more samples tell",
+                100 * (1 - value)));
+}
+
 void warn_about_black(std::uint64_t samples) {
     print_warning(fmt::format(
         "the image is black after {} samples per pixel, so its error is not known and --error cannot be met; --spp or "

@@ -24,6 +24,9 @@ void warn_about_depths(const AnyMethod& method, const std::optional<int>& max_de
 /// Values that were not finite, and how to meet the first of them again.
 void warn_about_values(const RenderCounts& counts, const Image& image);
 
+/// Light that rests on few rare paths, so that the image and its estimated error may be off there.
+void warn_about_coverage(const RenderStatistics& statistics);
+
 /// Samples after which an image that is still black ends a render which nothing but --error would end.
 inline constexpr std::uint64_t most_black_samples = 256;
 void warn_about_black(std::uint64_t samples);

@@ -47,14 +47,10 @@ TEST_CASE("sampler: no number is 1 in 1e9") {
         }
 }
 
-TEST_CASE("primary samples: no number is 1 in 1e9, after large steps or small ones") {
-    for (const bool large : {true, false}) {
-        PrimarySample sample(4);
-        CHECK(largest<float>(draws, [&](std::uint64_t i) {
-                  sample.propose(large || i % 16 == 0);
-                  const float u = PrimarySample::Reader(sample, 0).next_1d();
-                  sample.accept();
-                  return u;
-              }) == 1 - 0x1p-24f);
-    }
+TEST_CASE("primary samples: no number is 1 in 1e9") {
+    PrimarySample sample(4);
+    CHECK(largest<float>(draws, [&](std::uint64_t) {
+              sample.propose();
+              return PrimarySample::Reader(sample, 0).next_1d();
+          }) == 1 - 0x1p-24f);
 }

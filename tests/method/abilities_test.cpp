@@ -48,7 +48,6 @@ std::map<std::string_view, double> shares(const LibraryDescription& description,
     std::map<std::string_view, double> means;
     for_each_method([&](auto method) {
         if (method.kind == Kind::heuristic) return;
-        if constexpr (requires { method.bootstrap; }) method.bootstrap = 1 << 18;
         Session session(scene, method);
         session.run({.samples = samples});
         CHECK(session.statistics().counts.non_finite == 0);

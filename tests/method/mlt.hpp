@@ -8,14 +8,9 @@
 
 namespace lightswitch::test {
 
-/// `refine` biases first iterations by about v / n, with v the relative variance of a path's target and n `bootstrap`.
-/// v is 1 to 50 for most scenes here (168 for cornell-spheres, 230 for camera in glass, 470 for veach-mis, 650 for
-/// light in mirror: as seen in the spread of `normalization` over seeds without `refine`), and a case's `samples` grows
-/// with it, so that v / n is at most 0.6 % (2 % for the last two). The noise of the brightness alone, which is the
-/// least that a comparison of 8 replicas must allow for, is about sqrt(v / n / 16): 2 % and more where v / n is that
-/// large.
+/// Plans differ with `bootstrap`, expected values do not: as many paths as each replica has in 16 x 16 pixels.
 inline Mlt mlt_for_tests(int max_depth, int samples = 16) {
-    return {.max_depth = max_depth, .bootstrap = 512 * samples};
+    return {.max_depth = max_depth, .bootstrap = 256 * samples};
 }
 
 /// Compares `mlt` with `truth`. False alarm: `false_alarm` / `share`.
@@ -39,7 +34,7 @@ inline void check_mlt_against_path_nee(const TransportCase& c, std::initializer_
 
 namespace scenes {
 
-/// On 8 x 8 pixels, which are 4 chains.
+/// On 8 x 8 pixels.
 inline LibraryDescription start_up() {
     LibraryDescription scene = lamp_in_sphere();
     scene.film.width = scene.film.height = 8;
@@ -48,8 +43,8 @@ inline LibraryDescription start_up() {
 
 }  // namespace scenes
 
-/// Few paths to start from, and chains that forget slowly.
-inline Mlt start_up_mlt(bool refine) { return {.bootstrap = 512, .large_steps = 0.05f, .refine = refine}; }
+/// Few paths to plan by.
+inline Mlt start_up_mlt(bool refine) { return {.bootstrap = 512, .refine = refine}; }
 
 /// Scenes of every kind of light, surface, camera and filter, of which some can be seen by few strategies only.
 inline std::vector<TransportCase> mlt_cases() {

@@ -42,7 +42,7 @@ TEST_CASE("mlt: furnaces are geometric series, to a part in a thousand") {
 TEST_CASE("mlt: light through the gap of a door") {
     const FullScene scene = build_scene<AllBsdfs, AllLights>(scenes::on_small_film(stock::describe_ajar_door()));
     const auto truth = replicate_finite(scene, Bdpt{}, 8, 16, 512);
-    const auto ours = replicate_finite(scene, Mlt{.bootstrap = 131072}, 8, 16, 1024);
+    const auto ours = replicate_finite(scene, Mlt{}, 8, 16, 1024);
     const Comparison comparison = compare(ours, truth, 1e-3);
     CHECK_MESSAGE(comparison.agree(), comparison);
     // Not by being so noisy that everything agrees.

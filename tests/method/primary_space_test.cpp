@@ -1,11 +1,11 @@
-// The random walk of Markov chains through random numbers, and what chooses path lengths and strategies for them.
+// The random walk of Markov chains through random numbers, and what tells where they are of use.
 
 #include "support/chi_square.hpp"
 #include "support/relative.hpp"
 #include "support/statistics.hpp"
 
 #include <lightswitch/method/brightness_guide.hpp>
-#include <lightswitch/method/depth_choice.hpp>
+#include <lightswitch/method/coverage.hpp>
 #include <lightswitch/method/primary_space.hpp>
 
 #include <doctest/doctest.h>
@@ -47,9 +47,8 @@ Mean spread_after(int steps) {
         PrimarySample sample(seed);
         const float before = read(sample, 1, 1)[0];
         for (int i = 0; i < steps; ++i) {
-            sample.propose(false);
-            read(sample, 2, 1);  // others move all the while
-            if (i + 1 < steps) sample.accept();
+            sample.propose();
+            read(sample, 0, 1);  // others move all the while
         }
         const double d = moved(before, read(sample, 1, 1)[0]);
         result.add(d * d);
@@ -91,10 +90,9 @@ TEST_CASE("primary samples: small steps stay within [0, 1) and leave the uniform
         PrimarySample sample(seed);
         read(sample, 0, 2);
         for (int step = 1; step <= 40; ++step) {
-            sample.propose(false);
+            sample.propose();
             const auto numbers = read(sample, 0, 2);
             for (const float v : numbers) REQUIRE((v >= 0 && v < 1));
-            sample.accept();
             if (step == 1 || step == 40) {
                 auto& values = step == 1 ? once : often;
                 values.insert(values.end(), numbers.begin(), numbers.end());
@@ -112,9 +110,9 @@ TEST_CASE("primary samples: small steps go up as often as down, far as often as 
     Mean direction;
     for (std::uint64_t seed = 0; seed < 100000; ++seed) {
         PrimarySample sample(seed);
-        const float before = read(sample, 2, 1)[0];
-        sample.propose(false);
-        const double d = moved(before, read(sample, 2, 1)[0]);
+        const float before = read(sample, 0, 1)[0];
+        sample.propose();
+        const double d = moved(before, read(sample, 0, 1)[0]);
         REQUIRE(std::abs(d) > shortest - 1e-6);
         REQUIRE(std::abs(d) < longest + 1e-6);
         const double along = std::log(std::abs(d) / shortest) / std::log(longest / shortest);
@@ -140,12 +138,11 @@ TEST_CASE("primary samples: what is rejected leaves no trace but in the numbers 
         std::array<std::vector<float>, PrimarySample::streams> state;
         for (std::size_t s = 0; s < state.size(); ++s) state[s] = read(sample, s, 2 + s);
         for (int step = 0; step < 40; ++step) {
-            sample.propose(choice.next() < 0.3f);
+            sample.propose();
             std::array<std::vector<float>, PrimarySample::streams> proposed;
             for (std::size_t s = 0; s < state.size(); ++s)
                 proposed[s] = read(sample, s, state[s].size() + (choice.next() < 0.3f ? 1 : 0));
             if (choice.next() < 0.5f) {
-                sample.accept();
                 state = proposed;
             } else {
                 sample.reject();
@@ -168,10 +165,10 @@ TEST_CASE("primary samples: numbers first used in a rejected step are fresh when
     for (std::uint64_t seed = 0; seed < 20000; ++seed) {
         PrimarySample sample(seed);
         read(sample, 1, 1);
-        sample.propose(false);
+        sample.propose();
         const float rejected = read(sample, 1, 2)[1];
         sample.reject();
-        sample.propose(false);
+        sample.propose();
         const float taken = read(sample, 1, 2)[1];
         values.push_back(taken);
         related.add(double(rejected), double(taken));
@@ -194,36 +191,35 @@ TEST_CASE("primary samples: rejected steps do not count as time") {
         PrimarySample sample(seed);
         const float before = read(sample, 1, 1)[0];
         for (int i = 0; i < 10; ++i) {
-            sample.propose(i % 3 == 0);
+            sample.propose();
             read(sample, 1, 1);
             sample.reject();
         }
-        sample.propose(false);
+        sample.propose();
         const double d = moved(before, read(sample, 1, 1)[0]);
         spread.add(d * d);
     }
     CHECK(std::abs(spread.sigmas((1.0 / 4096 - 1.0 / 1048576) / (2 * std::log(16.0)))) < 5);
 }
 
-TEST_CASE("primary samples: large steps are independent of the state, also for numbers read later") {
-    UniformCorrelation at_once, later;
-    std::vector<float> values;
-    for (std::uint64_t seed = 0; seed < 20000; ++seed) {
-        PrimarySample sample(seed);
-        const auto before = read(sample, 0, 2);
-        sample.propose(true);
-        const float first = read(sample, 0, 1)[0];
-        sample.accept();
-        sample.propose(false);
-        const float second = read(sample, 0, 2)[1];
-        at_once.add(double(before[0]), double(first));
-        later.add(double(before[1]), double(second));
-        values.push_back(first);
-        values.push_back(second);
-    }
-    CHECK(std::abs(at_once.sigmas()) < 5);
-    CHECK(std::abs(later.sigmas()) < 5);
-    CHECK(uniform_p(values, 100) > 1e-6);
+TEST_CASE("primary samples: begin where they are told to, and go on from there") {
+    PrimarySample sample(7);
+    sample.begin_at(1, {0.25f, 0.5f});
+    sample.begin_at(1, {0.75f, 0.125f});
+    PrimarySample::Reader reader(sample, 1);
+    CHECK(reader.next_2d() == Vec2(0.25f, 0.5f));
+    reader.skip();
+    CHECK(reader.next_1d() != 0.75f);  // the third pair is a fresh one
+    PrimarySample::Reader again(sample, 1);
+    again.skip();
+    CHECK(again.next_1d() == 0.75f);
+    sample.propose();
+    PrimarySample::Reader moving(sample, 1);
+    const Vec2 to = moving.next_2d();
+    for (const double d : {moved(0.25f, to.x), moved(0.5f, to.y)}) CHECK((std::abs(d) > 0 && std::abs(d) < 1.0 / 63));
+    sample.reject();
+    PrimarySample::Reader back(sample, 1);
+    CHECK(back.next_2d() == Vec2(0.25f, 0.5f));
 }
 
 // A walk of the kind that light transport makes: in half of the square the second number is not used, so that it is
@@ -241,107 +237,76 @@ TEST_CASE("primary samples: a Metropolis walk follows its density") {
                                          {(i + 1) / double(cells), (j + 1) / double(cells)}, 1e-10));
             total += expected.back();
         }
-    for (const double large : {0.02, 0.3}) {
-        std::vector<Mean> visits(expected.size());
-        for (std::uint64_t chain = 0; chain < chains; ++chain) {
-            PrimarySample sample(chain + 1000);
-            // The start follows the density: found by rejection from seeds.
-            Random random(static_cast<std::uint32_t>(chain));
-            const auto evaluate = [&](DVec2& at) {
-                PrimarySample::Reader reader(sample, 1);
-                at.x = double(reader.next_1d());
-                if (at.x >= 0.5) at.y = double(reader.next_1d());
-                return density(at.x, at.y);
-            };
-            DVec2 at(0);
-            double value = evaluate(at);
-            for (std::uint64_t seed = chain + 1001; double(random.next()) * 2.1 > value; seed += chains) {
-                sample = PrimarySample(seed);
-                value = evaluate(at);
-            }
-            std::vector<double> counts(expected.size());
-            for (int i = 0; i < steps; ++i) {
-                sample.propose(sample.random().next() < large);
-                DVec2 to(0);
-                const double proposed = evaluate(to);
-                if (sample.random().next() < proposed / value) {
-                    sample.accept();
-                    at = to;
-                    value = proposed;
-                } else {
-                    sample.reject();
-                }
-                if (at.x < 0.5) {  // y is not known here
-                    for (int j = 0; j < cells; ++j)
-                        counts[static_cast<std::size_t>(int(at.x * cells) * cells + j)] += 1.0 / cells;
-                } else {
-                    ++counts[static_cast<std::size_t>(int(at.x * cells) * cells + int(at.y * cells))];
-                }
-            }
-            for (std::size_t i = 0; i < counts.size(); ++i) visits[i].add(counts[i] / steps);
+    std::vector<Mean> visits(expected.size());
+    for (std::uint64_t chain = 0; chain < chains; ++chain) {
+        PrimarySample sample(chain + 1000);
+        // The start follows the density: found by rejection from seeds.
+        Random random(static_cast<std::uint32_t>(chain));
+        const auto evaluate = [&](DVec2& at) {
+            PrimarySample::Reader reader(sample, 1);
+            at.x = double(reader.next_1d());
+            if (at.x >= 0.5) at.y = double(reader.next_1d());
+            return density(at.x, at.y);
+        };
+        DVec2 at(0);
+        double value = evaluate(at);
+        for (std::uint64_t seed = chain + 1001; double(random.next()) * 2.1 > value; seed += chains) {
+            sample = PrimarySample(seed);
+            value = evaluate(at);
         }
-        for (std::size_t i = 0; i < visits.size(); ++i)
-            CHECK_MESSAGE(std::abs(visits[i].sigmas(expected[i] / total)) < 5.5, "large ", large, ", cell ", i, ": ",
-                          visits[i].value(), " against ", expected[i] / total);
+        std::vector<double> counts(expected.size());
+        for (int i = 0; i < steps; ++i) {
+            sample.propose();
+            DVec2 to(0);
+            const double proposed = evaluate(to);
+            if (sample.random().next() < proposed / value) {
+                at = to;
+                value = proposed;
+            } else {
+                sample.reject();
+            }
+            if (at.x < 0.5) {  // y is not known here
+                for (int j = 0; j < cells; ++j)
+                    counts[static_cast<std::size_t>(int(at.x * cells) * cells + j)] += 1.0 / cells;
+            } else {
+                ++counts[static_cast<std::size_t>(int(at.x * cells) * cells + int(at.y * cells))];
+            }
+        }
+        for (std::size_t i = 0; i < counts.size(); ++i) visits[i].add(counts[i] / steps);
     }
+    for (std::size_t i = 0; i < visits.size(); ++i)
+        CHECK_MESSAGE(std::abs(visits[i].sigmas(expected[i] / total)) < 5.5, "cell ", i, ": ", visits[i].value(),
+                      " against ", expected[i] / total);
 }
 
-namespace {
-
-/// What holds for every choice of lengths, whatever it has learned.
-void check_depths(const DepthChoice& choice, int max_depth, std::uint32_t seed) {
-    CAPTURE(max_depth);
-    constexpr int draws = 40000;
-    const int last = max_depth < 0 ? 700 : max_depth;
-    double sum = 0;
-    std::vector<double> observed(static_cast<std::size_t>(last + 1)), expected(observed.size());
-    for (int depth = 2; depth <= last; ++depth) {
-        CHECK(choice.probability(depth) > 0);
-        expected[static_cast<std::size_t>(depth)] = draws * choice.probability(depth);
-        sum += choice.probability(depth);
+TEST_CASE("coverage: the share of light that does not rest on few paths in its part") {
+    Coverage coverage;
+    CHECK(coverage.covered() == 1);
+    CHECK(coverage.paths_left() == 0);
+    for (int i = 0; i < 900; ++i) coverage.add({0.1f, 0.1f}, 2, 1, 0);
+    CHECK(coverage.covered() == 1);
+    // Of 2: 15 paths are too few, and the next one is enough.
+    for (int i = 0; i < 15; ++i) coverage.add({0.6f, 0.1f}, 3, 4, 2);
+    CHECK(coverage.light == 960);
+    CHECK(coverage.left == 30);
+    CHECK(coverage.paths_left() == relative(15, 1e-12));
+    CHECK(coverage.covered() == relative(1 - 30.0 / 960, 1e-12));
+    Coverage other;
+    other.add({0.7f, 0.2f}, 3, 4, 2);
+    coverage += other;
+    CHECK(coverage.covered() == 1);
+    // Elsewhere, of another length, or beyond the film: other parts. Lengths from 5 on are one.
+    for (const auto& [place, length] :
+         {std::pair(Vec2(0.8f, 0.1f), 3), {Vec2(0.6f, 0.1f), 4}, {Vec2(0.6f, 0.3f), 3}, {Vec2(7, -7), 5}}) {
+        Coverage more = coverage;
+        more.add(place, length, 4, 2);
+        CHECK(more.covered() == relative(1 - 2 / 968.0, 1e-12));
     }
-    CHECK(sum == relative(1, 1e-12));
-    Random random(seed);
-    for (int i = 0; i < draws; ++i) {
-        const int depth = choice.sample((i + double(random.next())) / draws);
-        REQUIRE(depth >= 2);
-        REQUIRE(depth <= last);
-        ++observed[static_cast<std::size_t>(depth)];
-    }
-    // The draws are stratified: counts are off by less than 2, and fall by one at each boundary at most.
-    for (std::size_t depth = 2; depth < observed.size(); ++depth)
-        CHECK_MESSAGE(std::abs(observed[depth] - expected[depth]) < 2, depth);
-    for (const double u : {0.0, 0.5, 1 - 0x1p-53, 1.0}) {
-        CHECK(choice.sample(u) >= 2);
-        CHECK(choice.sample(u) <= last);
-    }
-}
-
-}  // namespace
-
-TEST_CASE("choice of path lengths: probabilities are those of the draws, before and after learning") {
-    std::uint32_t seed = 1;
-    for (const int max_depth : {2, 3, 4, 30, 31, 32, 33, 40, -1}) {
-        const auto last = static_cast<std::size_t>(max_depth < 0 ? 100 : max_depth);
-        DepthChoice choice(max_depth);
-        check_depths(choice, max_depth, seed++);
-        const double before = choice.probability(2);
-        choice.learn({});
-        choice.learn(std::vector<double>(last + 1, 0.0));
-        CHECK(choice.probability(2) == before);
-
-        std::vector<double> power(last + 1);
-        power[last] = 7;  // one length only
-        DepthChoice one(max_depth);
-        one.learn(power);
-        check_depths(one, max_depth, seed++);
-        if (max_depth >= 2 && max_depth <= 31)
-            CHECK(one.probability(max_depth) == relative(0.5 + choice.probability(max_depth) / 2, 1e-5));
-
-        for (std::size_t i = 2; i <= last; ++i) power[i] = 1 / double(i);
-        choice.learn(power);
-        check_depths(choice, max_depth, seed++);
-    }
+    for (int length = 5; length < 21; ++length) coverage.add({0.9f, 0.9f}, length, 4, 2);
+    CHECK(coverage.covered() == 1);
+    // One that outshines all others makes them few.
+    coverage.add({0.6f, 0.1f}, 3, 1000, 1000);
+    CHECK(coverage.covered() < 0.6);
 }
 
 namespace {

@@ -51,10 +51,7 @@ void check_sums(const PathReplay& replayed) {
 /// What a method can be asked for in a test without rendering for long.
 template <class M>
 M quick(M method) {
-    if constexpr (requires { method.bootstrap; }) {
-        method.bootstrap = 500;
-        method.chains = 8;
-    }
+    if constexpr (requires { method.bootstrap; }) method.bootstrap = 500;
     return method;
 }
 

@@ -170,7 +170,7 @@ TEST_CASE("verify: what it cannot do is an error that says what to do, and nothi
         {{"verify", "furnace", "--methods", "bdpt,path-nee", "--radius", "1"},
          "--radius: there is no such setting in path, bdpt, path-nee; it belongs to photon, vcm"},
         {{"verify", "furnace", "--methods", "vcm,photon", "--radius", "0"}, "photon would gather nothing"},
-        {{"verify", "furnace", "--chains", "0"}, "--chains: \"0\""},
+        {{"verify", "furnace", "--bootstrap", "0"}, "--bootstrap: \"0\""},
         {{"verify", "--images", "a-*.pfm", "--against", "a-*.pfm", "--radius", "1"}, "files have no settings"},
         {{"verify", "furnace", "--confidence", "1"}, "--confidence: it must be below 1"},
         {{"verify", "furnace", "--seconds", "0"}, "--seconds"},

@@ -32,10 +32,7 @@ const DiffuseScene& box() {
 template <class M>
 M quick() {
     M method;
-    if constexpr (std::same_as<M, Mlt>) {
-        method.chains = 8;
-        method.bootstrap = 500;
-    }
+    if constexpr (std::same_as<M, Mlt>) method.bootstrap = 500;
     return method;
 }
 

@@ -12,6 +12,7 @@ namespace lightswitch {
 struct Contribution {
     Rgb value{0};      ///< the integrand over the density, as if there were no other strategy
     float weight = 0;  ///< by multiple importance sampling
+    float chance = 1;  ///< with which it was counted at all: `value` has been divided by it
 };
 
 /// A contribution that depends on whether two points see each other.
@@ -173,6 +174,7 @@ Rgb gather_camera_subpath(const auto& scene, const Ray& ray, auto& sampler, cons
             const float probability = adds / (worth * gathered);
             if (roulette.next_float() >= probability) return;
             connection.value /= probability;
+            connection.chance = probability;
         }
         if (visible(scene, connection)) add(connection, how, s, t);
     };

@@ -2,283 +2,290 @@
 
 #include <lightswitch/method/brightness_guide.hpp>
 #include <lightswitch/method/connection.hpp>
-#include <lightswitch/method/depth_choice.hpp>
-#include <lightswitch/method/primary_space.hpp>
+#include <lightswitch/method/coverage.hpp>
+#include <lightswitch/method/primary_path.hpp>
 #include <lightswitch/render/frame.hpp>
 #include <lightswitch/render/method.hpp>
 
-#include <limits>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace lightswitch {
 
-/// Metropolis light transport in primary sample space (Kelemen et al. 2002), multiplexed (Hachisuka, Kaplanyan,
-/// Dachsbacher, "Multiplexed Metropolis Light Transport", 2014): Markov chains walk through the random numbers of a
-/// bidirectional path tracer and stay where the image gets its light from. A state holds one path of one length, made
-/// by one strategy (s, t), which is a coordinate like any other. Lights that are seen directly are left to a ray per
-/// pixel.
+/// What `Mlt` is right by.
+struct ChainRules {
+    /// The share of a contribution of luminance `light` that counts as bidirectional path tracing finds it; the rest of
+    /// it is left to chains. A continuous function, so that what chains walk on has no edge.
+    static double kept(double light, double limit) { return light > limit ? limit / light : 1; }
+    static double left(double light, double limit) { return 1 - kept(light, limit); }
+
+    /// Of a step (Metropolis et al. 1953).
+    static double acceptance(double current, double proposed) {
+        return current > 0 ? std::min(1.0, proposed / current) : 1;
+    }
+
+    /// How many chains start at a path, and what each carries: together, on the average over `u` in [0, 1), `energy`.
+    struct Start {
+        int chains = 0;
+        double energy = 0;
+    };
+    static Start start(double energy, double of_chain, double u) {
+        const double chains = energy / of_chain;
+        if (chains < 1) return {u < chains, of_chain};
+        const double whole = std::ceil(std::min(chains, double(most)));
+        return {static_cast<int>(whole), energy / whole};
+    }
+    static constexpr int most = 32;  ///< chains at one path, so that none takes the rest of a render
+};
+
+/// Metropolis light transport in primary sample space (Kelemen et al. 2002) that leaves to bidirectional path tracing
+/// what it does well, and redistributes the rest (Cline, Talbot and Egbert, "Energy Redistribution Path Tracing",
+/// 2005).
 ///
-/// An iteration is about one mutation per pixel. Chains start from independent paths chosen in proportion to what they
-/// carry, so no step has to be thrown away (Veach 1997, section 11.3.1), and the image's brightness is the mean over
-/// those paths and all large steps before the iteration. With `refine` false it is the mean over the first ones alone:
-/// then every iteration is unbiased, whereas refining adds a bias of about the relative variance of that mean, which
-/// fades as chains forget where they began.
+/// An iteration makes the paths of `Bdpt`. Of a contribution that is much brighter than its part of the image, what
+/// exceeds a limit is not put where it was found: Markov chains start there, which walk through the random numbers of
+/// that strategy in proportion to what exceeds the limit, and spread it over where it could have been found. They start
+/// at paths that are found in that proportion, so no step has to be thrown away (Veach 1997, section 11.3.1), and every
+/// iteration is unbiased: nothing that is found is lost, however short the chains. Rare finds get long chains, frequent
+/// ones short ones. Lights that are seen directly are left to a ray per pixel.
 struct Mlt {
     static constexpr std::string_view name = "mlt";
     static constexpr Kind kind = Kind::unbiased;
     static constexpr PathClasses cannot_make{.mirrored_dirac_caustic = true};
 
-    int max_depth = PathLength{}.max_depth;  ///< see `PathLength`; there is no roulette
-    int chains = 1024;                       ///< fewer for images of fewer than 16 pixels per chain
-    int bootstrap = 65536;                   ///< independent paths to start from
-    float large_steps = 0.3f;                ///< probability of a mutation that forgets the state, in (0, 1]
-    bool refine = true;                      ///< see above
-
-    /// A path and where the camera sees it.
-    struct Sample {
-        Vec2 pixel{0};
-        Rgb value{0};       ///< over its density: its mean over primary sample space is the sum over the pixels
-        double target = 0;  ///< what the chain's density is proportional to
-
-        void keep(auto& archive) { archive(pixel.x, pixel.y, value.x, value.y, value.z, target); }
-    };
+    int max_depth = PathLength{}.max_depth;  ///< see `PathLength`
+    int bootstrap = 32768;                   ///< paths that tell beforehand how bright the image is, above 0
+    float mutations = 0.5f;                  ///< at most, per pixel and iteration: fewer where little is left to chains
+    bool refine = true;  ///< plan chains by all iterations before, not by the first paths alone; no bias either way
 
     class State {
     public:
         std::vector<std::pair<std::string, double>> statistics() const {
-            const double n = std::max(double(steps), 1.0);
-            return {{"chains", double(chains.size())},
-                    {"mutations", double(steps)},
-                    {"acceptance_rate", double(accepted) / n},
-                    {"large_step_rate", double(large) / n},
-                    {"normalization", normalization()}};
+            return {{"chains", double(all.chains)},
+                    {"mutations", double(all.mutations)},
+                    {"acceptance_rate", all.accepted / std::max(double(all.mutations), 1.0)},
+                    {"chain_length", double(plan.length)},
+                    {"chain_energy", plan.energy},
+                    {"chain_share", all.light > 0 ? all.left / all.light : 0},
+                    {"coverage", all.covered()}};
         }
 
         /// What `start` does not find again (render/archive.hpp).
-        void keep(auto& archive) { archive(chains, sum, drawn, steps, accepted, large); }
+        void keep(auto& archive) { archive(all, plan); }
 
     private:
         friend Mlt;
-        struct Chain {
-            PrimarySample sample;
-            int depth = 2;
-            Sample current;
-            std::uint64_t steps = 0, accepted = 0, large = 0;  // of the last iteration
-            double large_sum = 0;                              // of the targets of its large steps
+        /// What paths found, and what chains did.
+        struct Tally : Coverage {
+            std::uint64_t paths = 0, chains = 0, mutations = 0;
+            double accepted = 0;
 
-            void keep(auto& archive) { archive(sample, depth, current); }
+            void operator+=(const Tally& other) {
+                Coverage::operator+=(other);
+                paths += other.paths;
+                chains += other.chains;
+                mutations += other.mutations;
+                accepted += other.accepted;
+            }
+            void keep(auto& archive) {
+                Coverage::keep(archive);
+                archive(paths, chains, mutations, accepted);
+            }
         };
-        double normalization() const { return drawn > 0 ? sum / double(drawn) : 0; }
+        /// Of an iteration: the steps of each chain, and the light over the guide that it carries.
+        struct Plan {
+            int length = 1;
+            double energy = 0;
 
-        DepthChoice depths;
+            void keep(auto& archive) { archive(length, energy); }
+        };
+
         BrightnessGuide guide;
-        std::vector<Chain> chains, next;
-        double sum = 0;  // of the targets of `drawn` independent paths
-        std::uint64_t drawn = 0;
-        std::uint64_t steps = 0, accepted = 0, large = 0;
+        double mean = 0;  // luminance of the image
+        Tally before, all;
+        Plan plan;
     };
 
-    State start(auto& frame) const {
+    State start(auto& frame) const { return start_by(frame, ChainRules()); }
+    void iterate(auto& frame, State& state) const { iterate_by(frame, state, ChainRules()); }
+
+    /// `start` and `iterate` by other rules than `ChainRules`.
+    State start_by(auto& frame, const auto& rules) const {
         State state;
         if (max_depth == 0 || max_depth == 1) return state;
-        // The first paths tell which lengths matter and where the image is bright; they are not used for anything else.
-        state.depths = DepthChoice(max_depth);
         state.guide = BrightnessGuide(frame.width(), frame.height());
-        std::vector<double> power;
-        const auto pilot = draw(frame, state, std::max(bootstrap / 2, 1));
-        for (const Seed& seed : pilot) {
-            const auto depth = static_cast<std::size_t>(seed.depth);
-            if (depth >= power.size()) power.resize(depth + 1);
-            power[depth] += seed.target;
-        }
-        state.depths.learn(power);
-        state.guide.learn(pilot);
+        struct Bright {
+            Vec2 pixel{0};
+            double target = 0;
+        };
+        const std::size_t n = static_cast<std::size_t>(std::max(bootstrap / 2, 1)),
+                          units = (n + per_unit - 1) / per_unit;
+        std::vector<std::vector<Bright>> found(units);
+        look(frame, n, [&](std::size_t unit, const FoundPath& f) { found[unit].push_back({f.pixel, f.light()}); });
+        std::vector<Bright> all;
+        double sum = 0;
+        for (const auto& unit : found) all.insert(all.end(), unit.begin(), unit.end());
+        for (const Bright& bright : all) sum += bright.target;
+        state.guide.learn(all);
+        state.mean = sum / double(n);
 
-        const auto seeds = draw(frame, state, std::max(bootstrap, 1));
-        for (const Seed& seed : seeds) state.sum += seed.target;
-        state.drawn = seeds.size();
-        if (frame.stopped() || !(state.sum > 0)) return state;
-        state.chains.resize(
-            std::clamp<std::size_t>(frame.area() / 16, 1, static_cast<std::size_t>(std::max(chains, 1))));
-        // Evenly through the sum, from a random begin.
-        const double step = state.sum / double(state.chains.size());
-        double next = step * RandomSequence(~seeds[0].seed).next(), sum = 0;
-        std::size_t filled = 0;
-        for (const Seed& seed : seeds) {
-            sum += seed.target;
-            for (; filled < state.chains.size() && next < sum; next += step, ++filled) {
-                auto& chain = state.chains[filled];
-                chain = {.sample = PrimarySample(seed.seed), .depth = seed.depth, .current = {}};
-                chain.current = evaluate(frame, chain.sample, state, chain.depth, nullptr);
-                // Chains that begin alike must not go on alike.
-                chain.sample.random() = RandomSequence(detail::mix64(seed.seed + filled));
-            }
-        }
-        state.chains.resize(filled);
+        // How much is left to chains is told by other paths than those that made the guide.
+        std::vector<typename State::Tally> tallies(units);
+        look(frame, n, [&](std::size_t unit, const FoundPath& f) {
+            note(tallies[unit], frame, state, f, rules.left(f.light() * double(f.chance), limit(state, f)));
+        });
+        for (const auto& tally : tallies) state.before += tally;
+        state.before.paths = n;
         return state;
     }
 
-    void iterate(auto& frame, State& state) const {
+    void iterate_by(auto& frame, State& state, const auto& rules) const {
         if (max_depth == 0) return;
         see_lights(frame);
-        if (state.chains.empty()) return;
-        const std::size_t n = state.chains.size();
-        const std::uint64_t mutations = (frame.area() + n - 1) / n;
-        // Splats add up to the image's sum over pixels: each step's share of it.
-        const double share = state.normalization() / (double(mutations) * double(n));
-        state.next.resize(n);
+        if (!(state.mean > 0)) return;
+        const std::uint64_t n = frame.area(), columns = static_cast<std::uint64_t>(frame.width());
+        const auto plan = planned(state);
+        std::vector<typename State::Tally> tallies((n + per_unit - 1) / per_unit);
         frame.paths(
             n,
-            [&](std::uint64_t index, auto&, auto& splatter) {
-                auto& chain = state.next[index] = state.chains[index];
-                chain.steps = chain.accepted = chain.large = 0;
-                chain.large_sum = 0;
-                walk(frame, state, chain, mutations, share, splatter);
+            [&](std::uint64_t index, auto& sampler, auto& splatter) {
+                auto& tally = tallies[index / per_unit];
+                ++tally.paths;
+                auto light_sampler = sampler.split();
+                auto camera_begin = sampler;
+                const auto light_begin = light_sampler;
+                const Vec2 cell(static_cast<float>(index % columns), static_cast<float>(index / columns));
+                const Vec2 within = sampler.next_2d();
+                const Vec2 on_film =
+                    glm::min((cell + within) / Vec2(frame.width(), frame.height()), Vec2(1 - 0x1p-24f));
+                static thread_local std::vector<FoundPath> bright;  // kept, so that it need not be allocated again
+                bright.clear();
+                trace_all_strategies(frame, max_depth, on_film, sampler, light_sampler, splatter,
+                                     [&](const FoundPath& f) {
+                                         const double light = f.light() * double(f.chance), most = limit(state, f);
+                                         const double left = rules.left(light, most);
+                                         note(tally, frame, state, f, left);
+                                         if (left > 0) bright.push_back(f);
+                                         return rules.kept(light, most);
+                                     });
+                if (bright.empty()) return;
+                RandomSequence random(sampler.next_2d());
+                camera_begin.next_2d();  // where on the film it begins is known
+                for (const FoundPath& f : bright) {
+                    const double left = rules.left(f.light() * double(f.chance), limit(state, f));
+                    const auto start =
+                        rules.start(f.light() * left / double(state.guide(f.pixel)), plan.energy, random.next());
+                    for (int i = 0; i < start.chains; ++i) {
+                        PrimarySample sample(static_cast<std::uint64_t>(random.next() * 0x1p53));
+                        sample.begin_at(camera_stream, on_film);
+                        begin(sample, camera_stream, camera_begin, f.t);
+                        if (f.s > 1) begin(sample, light_stream, light_begin, f.s);
+                        ++tally.chains;
+                        walk(frame, rules, state, sample, f, plan.length, start.energy, tally, splatter);
+                    }
+                }
             },
-            1);
+            per_unit);
         if (frame.stopped()) return;
-        state.chains.swap(state.next);
-        for (const auto& chain : state.chains) {
-            state.steps += chain.steps;
-            state.accepted += chain.accepted;
-            state.large += chain.large;
-            if (!refine) continue;
-            state.sum += chain.large_sum;
-            state.drawn += chain.large;
-        }
+        state.plan = plan;
+        for (const auto& tally : tallies) state.all += tally;
     }
 
 private:
-    enum Stream : std::size_t { strategy_stream, camera_stream, light_stream };
+    static constexpr std::uint64_t per_unit = 256;
+    static constexpr double brightest = 4;  // that is not left to chains, over its part of the image
+    static constexpr double few = 0.05;     // of the light, below which chains are given less time
+    static constexpr double least = 0.002;  // that is planned for: a first find must not find a plan for nothing
+    static constexpr double chains_per_find = 4;
+    static constexpr int shortest = 8, longest = 4096;
 
-    /// A path that a chain could start from: made of its seed and length.
-    struct Seed {
-        std::uint64_t seed = 0;
-        int depth = 2;
+    struct Sample {
         Vec2 pixel{0};
-        double target = 0;
+        Rgb value{0};
+        double target = 0;  // what the chain's density is proportional to
     };
 
-    std::vector<Seed> draw(auto& frame, const State& state, int n) const {
-        std::vector<Seed> seeds(static_cast<std::size_t>(n));
-        frame.paths(seeds.size(), [&](std::uint64_t index, auto& sampler, auto& splatter) {
-            const Vec2 a = sampler.next_2d(), b = sampler.next_2d();
-            const auto bits = [](float u) { return static_cast<std::uint64_t>(u * 0x1p24f); };
-            Seed& seed = seeds[index];
-            seed.seed = bits(a.x) | bits(a.y) << 24 | bits(b.x) << 48;
-            seed.depth = state.depths.sample(double(b.y) + double(a.x) * 0x1p-24);
-            PrimarySample sample(seed.seed);
-            const Sample found = evaluate(frame, sample, state, seed.depth, &splatter);
-            seed.pixel = found.pixel;
-            seed.target = found.target;
-        });
-        return seeds;
+    /// Paths whose light is put nowhere: `see(unit, found)`.
+    void look(auto& frame, std::size_t n, const auto& see) const {
+        frame.paths(
+            n,
+            [&](std::uint64_t index, auto& sampler, auto& splatter) {
+                auto light_sampler = sampler.split();
+                const Vec2 on_film = sampler.next_2d();
+                trace_all_strategies(frame, max_depth, on_film, sampler, light_sampler, splatter,
+                                     [&](const FoundPath& f) {
+                                         see(index / per_unit, f);
+                                         return 0.0;
+                                     });
+            },
+            per_unit);
     }
 
-    void walk(const auto& frame, const State& state, auto& chain, std::uint64_t mutations, double share,
-              auto& splatter) const {
-        const auto splat = [&](const Sample& sample, double weight) {
-            if (weight > 0 && sample.target > 0)
-                splatter.splat(sample.pixel, sample.value * static_cast<float>(weight * share / sample.target));
+    /// The luminance beyond which a contribution is not put where it was found.
+    static double limit(const State& state, const auto& found) {
+        return brightest * state.mean * double(state.guide(found.pixel));
+    }
+
+    static void note(auto& tally, const auto& frame, const State& state, const FoundPath& found, double left) {
+        const double light = found.light() / double(state.guide(found.pixel));
+        tally.add(found.pixel / Vec2(frame.width(), frame.height()), found.s + found.t - 1, light, light * left);
+    }
+
+    /// Mutations are worth their time where much is left to them: the more paths tell of it, the shorter the chains.
+    State::Plan planned(const State& state) const {
+        const auto& known = refine && state.all.paths > 0 ? state.all : state.before;
+        const double paths = double(known.paths), share = std::clamp(known.left / (paths * state.mean), least, 1.0);
+        const double per_path = std::max(double(mutations), 1e-6) * std::min(1.0, std::sqrt(share / few));
+        const double length = per_path * paths / std::max(chains_per_find * known.paths_left(), 1.0);
+        State::Plan plan;
+        plan.length = static_cast<int>(std::clamp(length, double(shortest), double(longest)));
+        plan.energy = share * state.mean * double(plan.length) / per_path;
+        return plan;
+    }
+
+    /// The numbers by which a path was found.
+    static void begin(PrimarySample& sample, PrimaryStream stream, auto numbers, int vertices) {
+        for (int i = 0; i < vertices * pairs_per_vertex; ++i) sample.begin_at(stream, numbers.next_2d());
+    }
+
+    static void walk(const auto& frame, const auto& rules, const State& state, PrimarySample& sample,
+                     const FoundPath& from, int length, double energy, auto& tally, auto& splatter) {
+        const double share = energy / double(length);
+        const auto splat = [&](const Sample& at, double weight) {
+            if (weight > 0 && at.target > 0)
+                splatter.splat(at.pixel, at.value * static_cast<float>(weight * share / at.target));
         };
-        double stayed = 0;  // the weight that the current state has gathered
-        for (std::uint64_t i = 0; i < mutations; ++i) {
-            const bool large = chain.sample.random().next() < double(large_steps);
-            chain.sample.propose(large);
-            const int depth = large ? state.depths.sample(chain.sample.random().next()) : chain.depth;
-            const Sample proposed = evaluate(frame, chain.sample, state, depth, &splatter);
-            const double acceptance =
-                chain.current.target > 0 ? std::min(1.0, proposed.target / chain.current.target) : 1;
-            ++chain.steps;
-            if (large) {
-                ++chain.large;
-                chain.large_sum += proposed.target;
+        const auto evaluate = [&](bool tell) {
+            const FoundPath found = trace_strategy(frame, sample, from.s, from.t);
+            if (!is_finite(found.value)) {
+                if (tell) splatter.splat(found.pixel, found.value);
+                return Sample{};
             }
+            const double left = rules.left(found.light(), limit(state, found));
+            return Sample{found.pixel, found.value * static_cast<float>(left),
+                          found.light() * left / double(state.guide(found.pixel))};
+        };
+        Sample current = evaluate(false);
+        double stayed = 0;  // the weight that the current state has gathered
+        for (int i = 0; i < length; ++i) {
+            sample.propose();
+            const Sample proposed = evaluate(true);
+            const double acceptance = rules.acceptance(current.target, proposed.target);
             // Both states count, by how likely each is taken: less noise than counting the one that is.
             stayed += 1 - acceptance;
-            if (chain.sample.random().next() < acceptance) {
-                splat(chain.current, stayed);
-                chain.sample.accept();
-                chain.current = proposed;
-                chain.depth = depth;
+            tally.accepted += acceptance;
+            if (sample.random().next() < acceptance) {
+                splat(current, stayed);
+                current = proposed;
                 stayed = acceptance;
-                ++chain.accepted;
             } else {
                 splat(proposed, acceptance);
-                chain.sample.reject();
+                sample.reject();
             }
         }
-        splat(chain.current, stayed);
-    }
-
-    /// The path of `depth` segments that the random numbers describe. What is not finite is told to `splatter` and
-    /// counts as black.
-    Sample evaluate(const auto& frame, PrimarySample& sample, const State& state, int depth, Splatter* splatter) const {
-        const auto& scene = frame.scene();
-        const auto& camera = connectable_camera(scene.camera());
-        PrimarySample::Reader control(sample, strategy_stream), on_camera(sample, camera_stream),
-            on_light(sample, light_stream);
-        const int strategies = depth + 1,
-                  s = std::min(static_cast<int>(control.next_1d() * static_cast<float>(strategies)), depth);
-        const int t = strategies - s;
-        // A filter that is wider than a pixel also sees what is just outside of the film.
-        const float margin = std::max(scene.film().filter.radius() - 0.5f, 0.0f);
-        const Vec2 size = Vec2(frame.width(), frame.height()) + 2 * margin;
-        const double area = double(size.x) * double(size.y);
-        const Vec2 on_film = on_camera.next_2d();
-        const Vec2 on_lens = camera.has_lens() ? on_camera.next_2d() : Vec2(0.5f);
-
-        Sample result{.pixel = on_film * size - margin};
-        CameraSubpath<point_of<decltype(scene)>> z(t > 1 ? camera.ray(result.pixel, on_lens) : Ray(), area, {});
-        bool escaped = false;
-        for (int edges = 1; edges < t; ++edges) {
-            escaped = !z.advance(scene);
-            if (escaped && !(s == 0 && edges == t - 1)) return {};
-            if (edges < t - 1 && !scatter(scene, z, on_camera)) return {};
-        }
-        Connection found;
-        if (s == 0) {
-            static_cast<Contribution&>(found) = escaped ? meet_environment(scene, z) : meet_light(scene, z);
-        } else if (t > 1 && !connectable(scene, z.vertex().point)) {
-            return {};
-        } else if (s == 1) {
-            const float choice = on_light.next_1d();
-            found = connect_to_light(scene, z.vertex(), Arrival(z.vertex().point), choice, on_light.next_2d(), {});
-        } else {
-            LightSubpath<point_of<decltype(scene)>> y(scene, on_light, {});
-            if (is_black(y.carried())) return {};
-            for (int edges = 1; edges < s; ++edges) {
-                if (!y.advance(scene)) return {};
-                if (edges < s - 1 && !scatter(scene, y, on_light)) return {};
-            }
-            if (!connectable(scene, y.vertex().point)) return {};
-            if (t > 1) {
-                found = connect(scene, y.vertex(), z.vertex(), Arrival(z.vertex().point), {});
-            } else {
-                const auto view = camera.view(y.vertex().point, on_lens);
-                if (!view) return {};
-                result.pixel = view->pixel;
-                const Vec2 inside = view->pixel + margin;
-                if (!(inside.x >= 0 && inside.y >= 0 && inside.x < size.x && inside.y < size.y)) return {};
-                found = connect_to_camera(scene, y.vertex(), *view, area, {});
-            }
-        }
-        if (s > 0 && !visible(scene, found)) return {};
-        result.value = found.value *
-                       static_cast<float>(double(found.weight) * area * strategies / state.depths.probability(depth));
-        if (!is_finite(result.value)) {
-            if (splatter) splatter->splat(result.pixel, result.value);
-            return {};
-        }
-        result.target = double(luminance(result.value)) / double(state.guide(result.pixel));
-        return result;
-    }
-
-    /// One bounce without roulette.
-    static bool scatter(const auto& scene, auto& path, auto& numbers) {
-        const Vec2 direction = numbers.next_2d();
-        return path.scatter(scene, direction, Vec2(numbers.next_1d(), 0), std::numeric_limits<int>::max());
+        tally.mutations += static_cast<std::uint64_t>(length);
+        splat(current, stayed);
     }
 };
 

@@ -15,24 +15,23 @@ namespace lightswitch {
 /// can grow without shifting the numbers of another. A number is brought up to date when it is asked for: those that
 /// are not used cost nothing.
 ///
-/// `propose` begins a step, `accept` or `reject` ends it.
+/// `propose` begins a step; `reject` takes it back.
 class PrimarySample {
 public:
-    static constexpr std::size_t streams = 3;
+    static constexpr std::size_t streams = 2;
 
-    /// A uniform point, made of `seed` alone; its first step, under way, is a large one.
+    /// A uniform point, made of `seed` alone, but for what `begin_at` says.
     explicit PrimarySample(std::uint64_t seed = 0) : random_(seed) {}
 
     RandomSequence& random() { return random_; }
 
-    /// A large step is a new uniform point; a small one moves every coordinate a little, and around the end of [0, 1).
-    void propose(bool large) {
-        ++now_;
-        large_ = large;
+    /// Before the first step: the next pair of numbers of a stream.
+    void begin_at(std::size_t stream, const Vec2& pair) {
+        for (const float value : {pair.x, pair.y}) coordinates_[stream].push_back({value, now_, 0, 0});
     }
-    void accept() {
-        if (large_) last_large_ = now_;
-    }
+
+    /// A step moves every coordinate a little, and around the end of [0, 1).
+    void propose() { ++now_; }
     void reject() {
         for (auto& stream : coordinates_)
             for (Coordinate& c : stream)
@@ -40,25 +39,23 @@ public:
         --now_;
     }
 
-    /// For who writes and reads it, between two steps (render/archive.hpp).
-    void keep(auto& archive) {
-        archive(random_, now_, last_large_, large_);
-        for (auto& stream : coordinates_) archive(stream);
-    }
-
-    /// Reads one stream from its begin on; serves as the sampler of a path.
+    /// Reads one stream from its begin on; serves as the sampler of a path, which takes numbers in pairs.
     class Reader {
     public:
         Reader(PrimarySample& sample, std::size_t stream) : sample_(sample), stream_(stream) {}
-        float next_1d() { return sample_.value(stream_, position_++); }
+        float next_1d() { return sample_.value(stream_, 2 * pair_++); }
         Vec2 next_2d() {
-            const float x = next_1d();
-            return {x, next_1d()};
+            const std::size_t at = 2 * pair_++;
+            const float x = sample_.value(stream_, at);
+            return {x, sample_.value(stream_, at + 1)};
         }
+
+        /// Past a pair that is of no use here.
+        void skip() { ++pair_; }
 
     private:
         PrimarySample& sample_;
-        std::size_t stream_, position_ = 0;
+        std::size_t stream_, pair_ = 0;
     };
 
 private:
@@ -67,8 +64,6 @@ private:
         std::uint32_t modified = 0;  // the step that changed it last; 0: never used
         float old_value = 0;
         std::uint32_t old_modified = 0;
-
-        void keep(auto& archive) { archive(value, modified, old_value, old_modified); }
     };
 
     float value(std::size_t stream, std::size_t position) {
@@ -78,9 +73,9 @@ private:
         if (c.modified == now_) return c.value;
         c.old_value = c.value;
         c.old_modified = c.modified;
-        if (large_ || c.modified < last_large_) c.value = random_.next_float();
-        // Many small steps in a row are one whose size grows as their square root.
-        if (!large_) c.value = moved(c.value, std::sqrt(static_cast<float>(now_ - std::max(c.modified, last_large_))));
+        // Many steps in a row are one whose size grows as their square root.
+        c.value =
+            c.modified == 0 ? random_.next_float() : moved(c.value, std::sqrt(static_cast<float>(now_ - c.modified)));
         c.modified = now_;
         return c.value;
     }
@@ -97,8 +92,7 @@ private:
 
     RandomSequence random_;
     std::array<std::vector<Coordinate>, streams> coordinates_;
-    std::uint32_t now_ = 1, last_large_ = 1;
-    bool large_ = true;
+    std::uint32_t now_ = 1;
 };
 
 }  // namespace lightswitch

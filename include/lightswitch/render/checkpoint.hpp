@@ -43,9 +43,8 @@ void add_settings(std::vector<RenderFact>& facts, const M& m) {
     if constexpr (requires { m.radius.alpha; }) add("alpha", m.radius.alpha);
     if constexpr (requires { m.paths_per_pixel; }) add("photon paths", m.paths_per_pixel);
     if constexpr (requires { m.final_gather; }) add("final gather", m.final_gather);
-    if constexpr (requires { m.chains; }) add("chains", m.chains);
     if constexpr (requires { m.bootstrap; }) add("bootstrap", m.bootstrap);
-    if constexpr (requires { m.large_steps; }) add("large steps", m.large_steps);
+    if constexpr (requires { m.mutations; }) add("mutations", m.mutations);
     if constexpr (requires { m.refine; }) add("refine", m.refine);
     if constexpr (requires { m.settings(); })
         for (const auto& [name, value] : m.settings()) facts.emplace_back(name, value);

@@ -4,6 +4,17 @@
 
 namespace lightswitch::test {
 
+namespace {
+
+/// For methods that take long to compile.
+template <class M>
+Estimator on_diffuse_scene(const LibraryDescription& description, const M& method) {
+    return estimator(
+        std::make_shared<const DiffuseScene>(build_scene<DiffuseBsdfs, Lights<TriangleLight>>(description)), method);
+}
+
+}  // namespace
+
 std::vector<PlantedBug> method_bugs() {
     std::vector<PlantedBug> bugs;
     using Describe = std::function<LibraryDescription()>;
@@ -62,6 +73,17 @@ std::vector<PlantedBug> method_bugs() {
     };
     roulette("roulette not compensated", PathMistake::roulette_not_compensated, 1);
     roulette("roulette compensated twice", PathMistake::roulette_compensated_twice, 3);
+
+    const auto chains = [&](std::string_view name, ChainMistake mistake) {
+        bugs.push_back({name, "wall-and-shadow", 2, [=] {
+                            const LibraryDescription description = wall_and_shadow();
+                            return std::pair(on_diffuse_scene(description, PlantedMlt{mistake}),
+                                             library_nee(description));
+                        }});
+    };
+    chains("what is left to chains counted twice", ChainMistake::left_counted_twice);
+    chains("chains without the ratio", ChainMistake::every_step_accepted);
+    chains("energy of small finds lost", ChainMistake::energy_lost);
     return bugs;
 }
 
@@ -71,9 +93,14 @@ std::vector<CorrectPair> method_copies() {
                  const LibraryDescription description = mirror_and_lamp();
                  return std::pair(on_library_scene(description, PlantedNee{}), library_nee(description));
              }},
-            {"planted-path without a mistake", "cornell-box", [] {
+            {"planted-path without a mistake", "cornell-box",
+             [] {
                  const LibraryDescription description = small_box();
                  return std::pair(on_library_scene(description, PlantedPath{}), library_path(description));
+             }},
+            {"planted-mlt without a mistake", "cornell-box", [] {
+                 const LibraryDescription description = small_box();
+                 return std::pair(on_diffuse_scene(description, PlantedMlt{}), library_nee(description));
              }}};
 }
 

@@ -4,6 +4,7 @@
 
 #include <lightswitch/bsdf/bsdf.hpp>
 #include <lightswitch/light/light.hpp>
+#include <lightswitch/method/mlt.hpp>
 #include <lightswitch/method/roulette.hpp>
 #include <lightswitch/render/method.hpp>
 
@@ -192,6 +193,46 @@ private:
         }
         return ray;
     }
+};
+
+enum class ChainMistake {
+    none,
+    left_counted_twice,   ///< what chains carry is put where it was found as well
+    every_step_accepted,  ///< whatever it finds: without the ratio
+    energy_lost,          ///< of finds that carry less than a chain does, when one starts there
+};
+
+/// `Mlt` with a mistake, and with much more left to chains, so that it shows.
+struct PlantedMlt {
+    static constexpr std::string_view name = "planted-mlt";
+    static constexpr Kind kind = Kind::unbiased;
+
+    ChainMistake mistake = ChainMistake::none;
+    int max_depth = PathLength{}.max_depth;
+
+    struct Rules {
+        ChainMistake mistake;
+
+        double left(double light, double limit) const { return ChainRules::left(light, limit / 20); }
+        double kept(double light, double limit) const {
+            return mistake == ChainMistake::left_counted_twice ? 1 : ChainRules::kept(light, limit / 20);
+        }
+        double acceptance(double current, double proposed) const {
+            if (mistake == ChainMistake::every_step_accepted) return 1;
+            return ChainRules::acceptance(current, proposed);
+        }
+        ChainRules::Start start(double energy, double of_chain, double u) const {
+            auto result = ChainRules::start(energy, of_chain, u);
+            if (mistake == ChainMistake::energy_lost) result.energy = std::min(result.energy, energy);
+            return result;
+        }
+    };
+
+    auto start(auto& frame) const { return method().start_by(frame, Rules{mistake}); }
+    void iterate(auto& frame, auto& state) const { method().iterate_by(frame, state, Rules{mistake}); }
+
+private:
+    Mlt method() const { return {.max_depth = max_depth, .bootstrap = 1024}; }
 };
 
 }  // namespace lightswitch::test
