@@ -16,8 +16,9 @@ namespace lightswitch {
 
 /// How a scene is built.
 struct BuildOptions {
-    std::string embree_config;  ///< Embree's device string, for example "threads=2"
-    bool robust = false;        ///< Embree's watertight test in any case (slower); otherwise only if a mesh has needles
+    std::string embree_config = {};  ///< Embree's device string, for example "threads=2"
+    bool robust = false;  ///< Embree's watertight test in any case (slower); otherwise only if a mesh has needles
+    std::size_t tree_from = 16;  ///< so many lights with bounds (`BoundedLight`), or more, are chosen by a `LightTree`
 };
 
 namespace detail {
@@ -31,7 +32,7 @@ public:
     using BuiltScene = Scene<Bsdfs<B...>, Lights<L...>, CameraList>;
 
     explicit SceneAssembly(const BuildOptions& options)
-        : device_(std::make_shared<const embree::Device>(options.embree_config)) {
+        : device_(std::make_shared<const embree::Device>(options.embree_config)), tree_from_(options.tree_from) {
         data_.statistics.robust = options.robust;
     }
 
@@ -50,7 +51,7 @@ public:
         detail::GroupRecord in_place = begin_group(data_.space, bounds);
         for (const auto& shape : description.shapes) add(shape);
         for (const auto& instance : description.instances) add_lights(description.groups[instance.group], instance);
-        detail::choose_lights(data_, pending_);
+        detail::choose_lights(data_, pending_, tree_from_);
         detail::refuse_dim(data_.emitters, data_.name);
         embree::Accelerator accelerator = end_group(in_place);
         auto& statistics = data_.statistics;
@@ -292,11 +293,11 @@ private:
 
     typename BuiltScene::Data data_;
     std::shared_ptr<const embree::Device> device_;
+    std::size_t tree_from_;
     std::vector<MaterialIndex> materials_;
     std::vector<detail::PendingEmitter> pending_;
     std::vector<embree::Accelerator::SphereData> spheres_;
-    // Of the group that shapes are being added to.
-    RenderSpace space_;
+    RenderSpace space_;  // of the group that shapes are being added to, as what follows
     double radius_ = 0;
     std::optional<embree::Accelerator> accelerator_;
 };
