@@ -40,7 +40,9 @@ struct Recorder {
     ls::Rgb emitted(const auto& p, const auto& d) const { return scene.emitted(p, d); }
     ls::Rgb environment(const auto& d) const { return scene.environment(d); }
     auto sample_light(const auto& p, float c, const auto& u) const { return scene.sample_light(p, c, u); }
-    auto light_pdf(const auto& p, const auto& w, const auto& h) const { return scene.light_pdf(p, w, h); }
+    auto light_pdf(const auto& p, const auto& n, const auto& w, const auto& h) const {
+        return scene.light_pdf(p, n, w, h);
+    }
     auto environment_pdf(const auto& n, const auto& w) const { return scene.environment_pdf(n, w); }
     auto sample_emission(float c, const auto& u, const auto& v) const { return scene.sample_emission(c, u, v); }
     auto emission_pdf(const auto& h, const auto& d) const { return scene.emission_pdf(h, d); }

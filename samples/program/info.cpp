@@ -94,6 +94,10 @@ int info(const SceneOptions& options) {
             for (const auto& [kind, count] : summary.materials) materials.push_back(fmt::format("{} {}", count, kind));
             line("materials", materials.empty() ? "none" : fmt::format("{}", fmt::join(materials, ", ")));
             line("lights", lights_text(summary, statistics));
+            if (statistics.tree_lights > 0)
+                line("light tree", fmt::format("of {} lights, {}, {:.3g} ms", statistics.tree_lights,
+                                               bytes_text(double(statistics.light_tree_bytes)),
+                                               statistics.light_tree_build_seconds * 1e3));
             line("memory", fmt::format("Embree {}, scene {}", bytes_text(double(statistics.embree_bytes)),
                                        bytes_text(double(statistics.scene_bytes))));
             line("build", fmt::format("Embree {:.3g} ms, all {:.3g} ms", statistics.embree_build_seconds * 1e3,

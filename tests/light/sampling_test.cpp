@@ -34,7 +34,7 @@ double density(const GreyScene& scene, const SurfacePoint& from, const Vec3& wi)
     const auto hit = scene.intersect(Ray{.origin = from.position, .direction = wi});
     if (!hit) return double(scene.environment_pdf(from.facing_normal(), wi).value);
     if (!hit->light || is_black(scene.emitted(*hit, -wi))) return 0;
-    return double(scene.light_pdf(from.position, wi, *hit).value);
+    return double(scene.light_pdf(from.position, from.lit_normal(), wi, *hit).value);
 }
 
 void check_density(const GreyScene& scene, const SurfacePoint& from, const SphereCells& cells, std::uint32_t seed) {
@@ -177,7 +177,7 @@ TEST_CASE("light sampling: a sphere does not light itself, nor what is inside") 
         lit += t.pdf.value > 0 && !is_black(t.radiance) && !scene.occluded(t.visibility);
         // What sampling cannot find must have no density, or multiple importance sampling would lose it.
         const auto back = scene.intersect(Ray{.origin = within.position, .direction = Vec3(outward)});
-        densities += back && scene.light_pdf(within.position, Vec3(outward), *back).value > 0;
+        densities += back && scene.light_pdf(within.position, within.lit_normal(), Vec3(outward), *back).value > 0;
     }
     CHECK(lit == 0);
     CHECK(densities == 0);
@@ -211,8 +211,10 @@ TEST_CASE("light sampling: a sphere that shines inwards gives pi times its radia
             if (!free || cosine < 0.1) continue;
             const auto found = scene.intersect(hit->spawn(s.wi));
             REQUIRE(found);
-            ratio =
-                std::max(ratio, std::abs(double(scene.light_pdf(hit->position, s.wi, *found).value / s.pdf.value) - 1));
+            ratio = std::max(
+                ratio,
+                std::abs(double(scene.light_pdf(hit->position, hit->lit_normal(), s.wi, *found).value / s.pdf.value) -
+                         1));
         }
         CHECK(wall.sigmas(2 * pi_d, 1e-3) < 5);
         // The next ray starts a little off the wall, which counts where the way across is short.

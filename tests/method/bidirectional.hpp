@@ -144,6 +144,35 @@ inline LibraryDescription many_lights() {
     return scene;
 }
 
+/// 240 lamps of every kind, scattered in a room without a ceiling under a sky, with a floor of rough metal and a ball
+/// of rough glass.
+inline LibraryDescription scattered_lamps() {
+    LibraryDescription scene;
+    const std::size_t grey = scene.add(TwoSided<Lambert>{{{0.6f, 0.5f, 0.4f}}}), black = scene.add(Lambert{Rgb(0)});
+    const RoughConductor metal{.alpha_u = 0.3f, .alpha_v = 0.3f};
+    scene.add(quad({-1, -1, 1}, {1, -1, 1}, {1, -1, -1}, {-1, -1, -1}), scene.add(TwoSided<RoughConductor>{metal}));
+    scene.add(quad({-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}), grey);
+    scene.add(quad({-1, -1, 1}, {-1, -1, -1}, {-1, 1, -1}, {-1, 1, 1}), grey);
+    scene.add(Sphere{{0.3, -0.6, -0.2}, 0.3}, scene.add(RoughDielectric{.alpha_u = 0.4f, .alpha_v = 0.4f}));
+    scene.add(EnvironmentSource{Rgb(0.05f, 0.1f, 0.2f)});
+    Random random(23);
+    for (int i = 0; i < 240; ++i) {
+        const DVec3 at(1.4 * double(random.next()) - 0.7, 0.1 + 0.7 * double(random.next()),
+                       1.4 * double(random.next()) - 0.7);
+        const DVec3 axis(uniform_sphere(random.next_2d()));
+        const float strength = std::pow(10.0f, 2 * random.next() - 1);
+        const DVec3 u = 0.03 * glm::normalize(glm::cross(axis, DVec3(0.3, 0.5, 0.8))), v = glm::cross(axis, u);
+        if (i % 4 == 0) scene.add(quad(at - u - v, at + u - v, at + u + v, at - u + v), black, Rgb(strength));
+        if (i % 4 == 1) scene.add(Sphere{at, 0.02}, black, Rgb(strength, 1, 1));
+        if (i % 4 == 2) scene.add(PointSource{at, Rgb(0.002f, 0.002f, 0.002f * strength)});
+        if (i % 4 == 3)
+            scene.add(
+                SpotSource{.position = at, .direction = axis, .intensity = Rgb(0.005f * strength), .cutoff_angle = 40});
+    }
+    look(scene, {0.3, 0, 3.4}, {0, -0.25, 0}, 38);
+    return on_small_film(scene);
+}
+
 /// Interpolated normals far from the true ones under light that grazes: a coarse tube and a ball of 80 triangles.
 inline LibraryDescription smooth_normals() {
     LibraryDescription scene;

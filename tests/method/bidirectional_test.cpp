@@ -20,6 +20,23 @@ TEST_CASE("bidirectional: each limit of the path length") {
     check_against_path_nee(all, {1, 2, 3, 4, 5}, 8, 1e-3, 2);
 }
 
+// Densities that are wrong where a tree chooses lights are the same in all methods: the truth is of the scene without.
+TEST_CASE("bidirectional: each limit of the path length where a tree chooses among many lamps") {
+    const TransportCase c{"scattered lamps", scenes::scattered_lamps()};
+    const FullScene scene = build_scene<AllBsdfs, AllLights>(c.description);
+    REQUIRE(scene.statistics().tree_lights == 300);
+    const FullScene table = build_scene<AllBsdfs, AllLights>(c.description, {.tree_from = 1000});
+    REQUIRE(table.statistics().tree_lights == 0);
+    constexpr int depths[] = {1, 2, 3, 4, -1}, share = 2 * static_cast<int>(std::size(depths));
+    for (const int depth : depths) {
+        const auto truth = replicate_finite(table, PathTracerNee{.max_depth = depth}, 8, 8, 128, 1);
+        check_bidirectional(c, scene, truth, depth, 8, 1e-3, share);
+        const auto nee = replicate_finite(scene, PathTracerNee{.max_depth = depth}, 8, 8, 64, 401);
+        const Comparison comparison = compare(nee, truth, 1e-3, share);
+        CHECK_MESSAGE(comparison.agree(), "path-nee, depth ", depth, ": ", comparison);
+    }
+}
+
 TEST_CASE("bidirectional: nothing at depth 0, emission alone at depth 1") {
     const FullScene scene = build_scene<AllBsdfs, AllLights>(scenes::lamp_in_sphere());
     const auto check = [&](auto method) {

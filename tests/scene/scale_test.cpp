@@ -52,6 +52,11 @@ std::vector<LibraryDescription> scenes() {
     far.camera.to_world = CameraDescription::look_at({0, 0, 1e5}, {0, 0, 0}, {0, 1, 0});
     far.camera.fov = 0.0014;
     list.push_back(far);
+    LibraryDescription lamps = stock::describe_cornell_box();  // enough of them for a light tree
+    for (int i = 0; i < 40; ++i)
+        lamps.add(Sphere{{-0.7 + 0.2 * (i % 8), -0.5 + 0.2 * (i / 8), -0.3 + 0.09 * (i % 5)}, 0.01 + 0.001 * i}, 0,
+                  Rgb(static_cast<float>(1 + i % 7)));
+    list.push_back(lamps);
     for (auto& scene : list) scene.film.width = scene.film.height = 32;
     return list;
 }

@@ -25,8 +25,8 @@ inline GreyDescription grey_description() {
     return scene;
 }
 
-inline GreyScene build_grey(const GreyDescription& description) {
-    return build_scene<Bsdfs<Lambert>, AllLights>(description, {.embree_config = "threads=1"});
+inline GreyScene build_grey(const GreyDescription& description, std::size_t tree_from = BuildOptions{}.tree_from) {
+    return build_scene<Bsdfs<Lambert>, AllLights>(description, {.embree_config = "threads=1", .tree_from = tree_from});
 }
 
 /// A triangle of `size` at `center` with a random orientation and shape.

@@ -41,16 +41,41 @@ inline Ray ray_into_scene(const Vec3& towards, const Vec2& place, float scene_ra
             .direction = -towards};
 }
 
+/// Where a light is, and into which directions it shines how strongly: what it is chosen by among many (`LightTree`).
+/// In render space. Bounds that leave something out cost noise and never bias.
+struct LightBounds {
+    Vec3 center{0};
+    float radius = 0;        ///< of a sphere around `center` that holds the light
+    Vec3 axis{0, 0, 1};      ///< unit
+    float cos_normals = -1;  ///< the cosine of the largest angle between `axis` and a normal of the light; -1 if round
+    float cos_emission = 0;  ///< the cosine of the largest angle between a normal and the light that leaves there
+    double intensity = 0;    ///< the largest radiant intensity (luminous weight) along a direction
+
+    /// Whether all of it is finite; a light without usable bounds is chosen as one that gives none.
+    bool usable() const {
+        return is_finite(center) && is_finite(axis) && is_finite(cos_normals) && is_finite(cos_emission) &&
+               is_finite(intensity) && is_finite(radius) && intensity >= 0 && radius >= 0;
+    }
+};
+
 /// A source of light in render space. `sample` may return black when the light cannot reach the point; the density in
 /// it is that of the light alone, without the probability of having chosen the light. Safe to use from several threads.
 ///
 /// - `infinite`: true when the light is beyond the scene and is met by rays that leave it;
-/// - `power()`: luminous weight by which the light is selected, proportional to the flux that it brings into the scene.
+/// - `power()`: luminous weight by which the light is selected, proportional to the flux that it brings into the scene;
+/// - optionally `bounds()`, `LightBounds` of a light that is not `infinite`: then a scene of many lights chooses it by
+///   what it may bring to a point, too (`BoundedLight`).
 template <class L>
 concept Light = requires(const L light, const SurfacePoint point, const Vec2 u) {
     { L::infinite } -> std::convertible_to<bool>;
     { light.sample(point, u) } -> std::same_as<LightSample>;
     { light.power() } -> std::convertible_to<double>;
+};
+
+/// A light that says where it is.
+template <class L>
+concept BoundedLight = Light<L> && requires(const L light) {
+    { light.bounds() } -> std::same_as<LightBounds>;
 };
 
 /// A light with a surface, which rays can hit. `pdf(from, wi, hit)` is the density with which `sample` at the

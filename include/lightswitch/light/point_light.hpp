@@ -12,6 +12,7 @@ struct PointLight {
     Rgb intensity;  ///< W/sr, times the square of the render space's scale
 
     double power() const { return double(luminance(intensity)) * 4 * double(pi); }
+    LightBounds bounds() const { return {.center = position, .intensity = double(luminance(intensity))}; }
 
     [[gnu::always_inline]] LightSample sample(const SurfacePoint& from, const Vec2&) const {
         const Vec3 to_light = position - from.position;

@@ -19,6 +19,11 @@ struct SphereLight {
     float offset;  ///< as in `SurfacePoint`
 
     double power() const { return double(luminance(emission)) * 4 * double(pi * pi) * double(radius) * double(radius); }
+    LightBounds bounds() const {
+        return {.center = center,
+                .radius = radius,
+                .intensity = double(luminance(emission)) * double(pi) * double(radius) * double(radius)};
+    }
 
     Rgb emitted(const SurfacePoint& at, const Vec3& direction) const {
         return dot(at.normal, direction) > 0 ? emission : Rgb(0);

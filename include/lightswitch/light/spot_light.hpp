@@ -23,6 +23,13 @@ public:
           power_(double(luminance(intensity)) * 2 * pi_d * falloff_integral(cutoff, std::min(beam, cutoff))) {}
 
     double power() const { return power_; }
+    LightBounds bounds() const {
+        return {.center = position_,
+                .axis = axis_,
+                .cos_normals = 1,
+                .cos_emission = 1 - one_minus_cos_cutoff_,
+                .intensity = double(luminance(intensity_))};
+    }
 
     LightSample sample(const SurfacePoint& from, const Vec2&) const {
         const Vec3 to_light = position_ - from.position;

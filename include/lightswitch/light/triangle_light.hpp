@@ -15,6 +15,18 @@ struct TriangleLight {
     float offset;     ///< as in `SurfacePoint`
 
     double power() const { return double(luminance(emission)) * double(pi) / double(density.value); }
+    /// Around the centroid.
+    LightBounds bounds() const {
+        const Vec3 middle = (edge1 + edge2) * (1.0f / 3);
+        const float farthest2 =
+            std::max({length_squared(middle), length_squared(edge1 - middle), length_squared(edge2 - middle)});
+        return {.center = corner + middle,
+                .radius = std::sqrt(farthest2),
+                .axis = normal,
+                .cos_normals = 1,
+                .cos_emission = 0,
+                .intensity = power() / double(pi)};
+    }
 
     Rgb emitted(const SurfacePoint& at, const Vec3& direction) const {
         return dot(at.normal, direction) > 0 ? emission : Rgb(0);

@@ -32,7 +32,8 @@ inline Contribution meet_light(const auto& scene, const auto& path) {
     double more = 0;
     if (z.edges > 1) {
         const float distance2 = square(z.point.distance), cosine = std::abs(dot(z.point.wo, z.point.normal));
-        const AreaPdf direct = to_area(scene.light_pdf(path.previous(), -z.point.wo, z.point), distance2, cosine);
+        const AreaPdf direct =
+            to_area(scene.light_pdf(path.previous(), path.previous_normal(), -z.point.wo, z.point), distance2, cosine);
         more = heuristic(direct) * z.weights.last +
                heuristic(scene.emission_pdf(z.point, z.point.wo)) * z.weights.connections;
     }

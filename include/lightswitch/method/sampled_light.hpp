@@ -20,7 +20,7 @@ public:
 
     /// Of the light that is met at `hit`.
     [[gnu::always_inline]] float weight(const auto& scene, const SurfacePoint& hit) const {
-        return sampled_ ? power_heuristic(pdf_, scene.light_pdf(from_, -hit.wo, hit)) : 1;
+        return sampled_ ? power_heuristic(pdf_, scene.light_pdf(from_, from_normal_, -hit.wo, hit)) : 1;
     }
     /// Of the environment, met along `direction`.
     [[gnu::always_inline]] float weight_of_environment(const auto& scene, const Vec3& direction) const {

@@ -17,9 +17,10 @@ namespace lightswitch {
 
 /// How a scene is built.
 struct BuildOptions {
-    std::string embree_config;  ///< Embree's device string, for example "threads=2"
+    std::string embree_config = {};  ///< Embree's device string, for example "threads=2"
     /// Embree's watertight test in any case (slower); or else where a mesh has needles, or `is_near_view`.
     bool robust = false;
+    std::size_t tree_from = 16;  ///< so many lights with bounds (`BoundedLight`), or more, are chosen by a `LightTree`
 };
 
 namespace detail {
@@ -33,7 +34,7 @@ public:
     using BuiltScene = Scene<Bsdfs<B...>, Lights<L...>, CameraList>;
 
     explicit SceneAssembly(const BuildOptions& options)
-        : device_(std::make_shared<const embree::Device>(options.embree_config)) {
+        : device_(std::make_shared<const embree::Device>(options.embree_config)), tree_from_(options.tree_from) {
         data_.statistics.robust = options.robust;
     }
 
@@ -51,11 +52,10 @@ public:
         detail::GroupRecord in_place = begin_group(data_.space, bounds);
         for (const auto& shape : description.shapes) add(shape);
         for (const auto& instance : description.instances) add_lights(description.groups[instance.group], instance);
-        detail::choose_lights(data_, pending_);
+        detail::choose_lights(data_, pending_, tree_from_);
         detail::refuse_dim(data_.emitters, data_.name);
         embree::Accelerator accelerator = end_group(in_place);
-        const DVec3 eye(description.camera.to_world[3]);
-        make_robust_if_near(accelerator, in_place.mesh_count, Vec3(data_.space.point(eye)), data_.statistics.robust);
+        make_robust_if_near(accelerator, in_place.mesh_count, description.camera, data_);
         SceneStatistics& statistics = data_.statistics;
         detail::Placement placement = description.instances.empty()
                                           ? detail::Placement{std::move(accelerator), {}}
@@ -294,11 +294,11 @@ private:
 
     typename BuiltScene::Data data_;
     std::shared_ptr<const embree::Device> device_;
+    std::size_t tree_from_;
     std::vector<MaterialIndex> materials_;
     std::vector<detail::PendingEmitter> pending_;
     std::vector<embree::Accelerator::SphereData> spheres_;
-    // Of the group that shapes are being added to.
-    RenderSpace space_;
+    RenderSpace space_;  // of the group that shapes are being added to, as what follows
     double radius_ = 0;
     std::optional<embree::Accelerator> accelerator_;
 };

@@ -2,6 +2,7 @@
 
 // Cameras that are so near to a surface that rays would slip through its edges.
 
+#include <lightswitch/camera/camera_description.hpp>
 #include <lightswitch/embree/accelerator.hpp>
 
 #include <cmath>
@@ -30,10 +31,12 @@ inline bool is_near_view(const embree::Accelerator& accelerator, std::uint32_t m
     return found;
 }
 
-/// Builds the accelerator anew for the view, unless it is `robust` already.
-inline void make_robust_if_near(embree::Accelerator& accelerator, std::uint32_t meshes, const Vec3& eye, bool& robust) {
-    if (robust || !is_near_view(accelerator, meshes, eye)) return;
-    robust = true;
+/// Builds the accelerator anew for the camera of a scene that is being built, unless it is robust already.
+inline void make_robust_if_near(embree::Accelerator& accelerator, std::uint32_t meshes, const CameraDescription& camera,
+                                auto& data) {
+    const Vec3 eye(data.space.point(DVec3(camera.to_world[3])));
+    if (data.statistics.robust || !is_near_view(accelerator, meshes, eye)) return;
+    data.statistics.robust = true;
     accelerator.commit(true);
 }
 

@@ -151,28 +151,30 @@ public:
         return sum;
     }
 
-    /// A direction towards a light that `choice` in [0, 1) selects (half by power, half evenly among the emitters) and
-    /// on which `u` selects a place; the density includes the selection. Black when there is no light.
+    /// A direction towards a light that `choice` in [0, 1) selects (half by power, half evenly among the emitters; of
+    /// many by a `LightTree`) and a place on it that `u` does; the density includes both. Black without lights.
     [[gnu::always_inline]] LightSample sample_light(const SurfacePoint& from, float choice, const Vec2& u) const {
         if (data().light_choice.empty()) return {};
-        const std::size_t number = data().light_choice.sample(choice);
+        const auto chosen = data().light_choice.at(from, choice);
         LightSample sample = with_light(
-            light_of_number(number), [&](const auto& light)
-                                         __attribute__((always_inline)) { return light.sample(from, u); });
-        sample.pdf = sample.pdf * data().light_choice.probability(number);
+            light_of_number(chosen.number), [&](const auto& light)
+                                                __attribute__((always_inline)) { return light.sample(from, u); });
+        sample.pdf = sample.pdf * chosen.probability;
+        sample.spread *= data().light_choice.over_start(chosen);
         return sample;
     }
 
-    /// The density with which `sample_light` at the position `from` chooses the direction `wi` to `hit`, a point on a
-    /// light.
-    [[gnu::always_inline]] SolidAnglePdf light_pdf(const Vec3& from, const Vec3& wi, const SurfacePoint& hit) const {
+    /// The density with which `sample_light`, at a point at `from` whose `lit_normal()` is `normal`, chooses the
+    /// direction `wi` to `hit`, a point on a light.
+    [[gnu::always_inline]] SolidAnglePdf light_pdf(const Vec3& from, const Vec3& normal, const Vec3& wi,
+                                                   const SurfacePoint& hit) const {
         if (data().light_choice.empty()) return {};  // there are lights, but all are black
         const SolidAnglePdf pdf = with_light(
             hit.light, [&](const auto& light) __attribute__((always_inline)) {
                 if constexpr (is_area<decltype(light)>) return light.pdf(from, wi, hit);
                 else return SolidAnglePdf{};
             });
-        return pdf * data().light_choice.probability(light_number(hit.light));
+        return pdf * data().light_choice.probability_at(from, normal, light_number(hit.light));
     }
 
     /// The density with which `sample_light`, at a point whose `lit_normal()` is `normal`, chooses the direction
@@ -181,19 +183,19 @@ public:
         if (data().light_choice.empty()) return {};
         SolidAnglePdf sum;
         for_each_environment([&](std::size_t number, const auto& light) __attribute__((always_inline)) {
-            sum.value += light.pdf(normal, wi).value * data().light_choice.probability(number);
+            sum.value += light.pdf(normal, wi).value * data().light_choice.start_probability(number);
         });
         return sum;
     }
 
-    /// A ray that leaves a light: `choice` in [0, 1) selects the light as in `sample_light`, `place` and `direction`
-    /// the ray. The weight and the density include the selection. Black when there is no light.
+    /// A ray that leaves a light: `choice` in [0, 1) selects the light as `sample_light` of few, `place` and
+    /// `direction` the ray. The weight and the density include the selection. Black when there is no light.
     [[gnu::always_inline]] LightEmission sample_emission(float choice, const Vec2& place, const Vec2& direction) const {
         static_assert((EmittingLight<L> && ...),
                       "methods that trace light need lights with `emit` and `spread` (EmittingLight)");
         if (data().light_choice.empty()) return {};
-        const std::size_t number = data().light_choice.sample(choice);
-        const float probability = data().light_choice.probability(number);
+        const std::size_t number = data().light_choice.start(choice);
+        const float probability = data().light_choice.start_probability(number);
         const TypedIndex light = light_of_number(number);
         LightEmission emission = with_light(
             light, [&](const auto& l) __attribute__((always_inline)) { return l.emit(place, direction); });
@@ -211,7 +213,7 @@ public:
                 if constexpr (is_area<decltype(light)>) return light.emission_pdf(hit, direction);
                 else return EmissionPdf{};
             });
-        return pdf * data().light_choice.probability(light_number(hit.light));
+        return pdf * data().light_choice.start_probability(light_number(hit.light));
     }
 
     /// The density with which `sample_emission` starts a path that comes from beyond the scene out of `direction`.
@@ -219,16 +221,17 @@ public:
         EmissionPdf sum;
         if (data().light_choice.empty()) return sum;
         for_each_environment([&](std::size_t number, const auto& light) {
-            sum.value += light.emission_pdf(direction).value * data().light_choice.probability(number);
+            sum.value += light.emission_pdf(direction).value * data().light_choice.start_probability(number);
         });
         return sum;
     }
 
-    /// `EmittingLight::spread` of that light.
+    /// `EmittingLight::spread`, times the probability that `sample_light` there selects the light over that of a start.
     [[gnu::always_inline]] float spread(TypedIndex light, const SurfacePoint& at, const Vec3& wi,
                                         const Vec3& place) const {
-        return with_light(
-            light, [&](const auto& l) __attribute__((always_inline)) { return l.spread(at, wi, place); });
+        return data().light_choice.over_start(at, light_number(light)) *
+               with_light(
+                   light, [&](const auto& l) __attribute__((always_inline)) { return l.spread(at, wi, place); });
     }
     /// Whether that light is beyond the scene.
     [[gnu::always_inline]] bool infinite(TypedIndex light) const {
@@ -245,7 +248,6 @@ public:
         return {kind, number - contents_->first_light[kind]};
     }
     std::size_t light_count() const { return contents_->first_light[sizeof...(L)]; }
-
     /// Calls `f(light)` with that light as its concrete type, and returns what it returns.
     template <class F>
     [[gnu::always_inline]] decltype(auto) with_light(TypedIndex light, F&& f) const {
@@ -257,8 +259,6 @@ public:
 
     /// The luminous shapes and sources, one entry each.
     const std::vector<Emitter>& emitters() const { return data().emitters; }
-
-    // --- the rest
 
     const CameraType& camera() const { return camera_; }
     const FilmDescription& film() const { return film_; }

@@ -4,12 +4,12 @@
 
 #include <lightswitch/bsdf/material.hpp>
 #include <lightswitch/core/dispatch.hpp>
-#include <lightswitch/core/table.hpp>
 #include <lightswitch/embree/accelerator.hpp>
 #include <lightswitch/geometry/render_space.hpp>
 #include <lightswitch/light/source.hpp>
 #include <lightswitch/scene/description.hpp>
 #include <lightswitch/scene/instance.hpp>
+#include <lightswitch/scene/light_choice.hpp>
 
 #include <algorithm>
 #include <array>
@@ -29,6 +29,9 @@ struct SceneStatistics {
     std::size_t instances = 0;
     std::int64_t embree_bytes = 0, scene_bytes = 0;
     double embree_build_seconds = 0, build_seconds = 0;
+    std::size_t tree_lights = 0;  ///< how many lights are chosen by a tree (`LightTree`); 0 where there is none
+    std::int64_t light_tree_bytes = 0;
+    double light_tree_build_seconds = 0;
     bool robust = false;  ///< whether Embree uses its watertight intersection test
 };
 
@@ -95,7 +98,7 @@ struct SceneData<Bsdfs<B...>, Lights<L...>> {
     bool masked = false;  ///< whether rays can go through a surface because of a `Mask`
     std::tuple<std::vector<B>...> bsdfs;
     std::tuple<std::vector<L>...> lights;
-    DiscreteDistribution light_choice;  ///< over light numbers, see `Scene::light_number`
+    LightChoice light_choice;  ///< over light numbers, see `Scene::light_number`
     std::vector<Emitter> emitters;
     SceneStatistics statistics;
 };

@@ -23,6 +23,11 @@ struct TexturedTriangleLight : TriangleLight {
         const double seen = double(luminance(mean_)), most = double(luminance(texture->most()));
         return TriangleLight::power() * (most > 0 ? std::max(seen, 0.02 * most) : 0.0);
     }
+    LightBounds bounds() const {
+        LightBounds result = TriangleLight::bounds();
+        result.intensity = power() / double(pi);
+        return result;
+    }
     /// The largest radiance of any place.
     Rgb brightest() const { return emission * texture->most(); }
     /// The mean radiance, nearly.

@@ -20,6 +20,12 @@ Estimator relit_round(const LibraryDescription& description, LightMistake mistak
                      PathTracerNee{});
 }
 
+Estimator by_tree(TreeMistake mistake) {
+    return estimator(std::make_shared<const ByTree<DiffuseScene>>(
+                         build_scene<DiffuseBsdfs, Lights<TriangleLight>>(floor_and_many_lamps()), mistake),
+                     PathTracerNee{});
+}
+
 template <class M>
 Estimator under_sky(bool sine_missing, const M& method) {
     LibraryDescription description = ball_in_sky<AnyMaterial>(Lambert{Rgb(0.7f)});
@@ -61,6 +67,12 @@ std::vector<PlantedBug> light_bugs() {
     add("cone of the sphere light too narrow", "floor-and-round-lamp", 2, cone_too_narrow, floor_and_round_lamp,
         relit_round);
 
+    const auto of_tree = [&](std::string_view name, TreeMistake mistake) {
+        bugs.push_back({name, "floor-and-many-lamps", 2,
+                        [=] { return std::pair(by_tree(mistake), library_nee(floor_and_many_lamps())); }});
+    };
+    of_tree("light tree: density of the level above", TreeMistake::met_density_of_level_above);
+    of_tree("light tree: probability of the other branch", TreeMistake::branch_probability_swapped);
     bugs.push_back({"sky density without the sine", "ball-and-floor in a gradient sky", 2,
                     [] { return std::pair(under_sky(true, PathTracerNee{}), under_sky(false, PathTracer{})); }});
     return bugs;
@@ -72,6 +84,8 @@ std::vector<CorrectPair> light_copies() {
                  const LibraryDescription description = floor_and_four_lamps();
                  return std::pair(relit(description, LightMistake::none), library_nee(description));
              }},
+            {"light tree without a mistake", "floor-and-many-lamps",
+             [] { return std::pair(by_tree(TreeMistake::none), library_nee(floor_and_many_lamps())); }},
             {"sphere light without a mistake", "floor-and-round-lamp",
              [] {
                  const LibraryDescription description = floor_and_round_lamp();

@@ -121,7 +121,7 @@ struct PlantedNee {
             const Vec3 wo = -ray.direction;
             if (hit->light)
                 sum += throughput * scene.emitted(*hit, wo) *
-                       met_weight(scene, *hit, ray, depth, light_sampled, pdf, from);
+                       met_weight(scene, *hit, ray, depth, light_sampled, pdf, from, from_normal);
             if (depth == last) break;
 
             const Basis basis = hit->shading_frame();
@@ -159,7 +159,7 @@ struct PlantedNee {
             light_sampled = !scattered->specular || wrong(NeeMistake::emission_lost_after_mirror);
             pdf = scattered->pdf;
             from = hit->position;
-            from_normal = hit->facing_normal();
+            from_normal = hit->lit_normal();
             ray = hit->spawn(basis.to_world(scattered->wi));
         }
         return sum;
@@ -168,11 +168,11 @@ struct PlantedNee {
 private:
     /// Of emission that a ray meets.
     float met_weight(const auto& scene, const SurfacePoint& hit, const Ray& ray, int depth, bool light_sampled,
-                     SolidAnglePdf pdf, const Vec3& from) const {
+                     SolidAnglePdf pdf, const Vec3& from, const Vec3& from_normal) const {
         if (mistake == NeeMistake::emission_lost_at_camera && depth == 1) return 0;
         if (!light_sampled || mistake == NeeMistake::light_counted_twice) return 1;
         if (mistake == NeeMistake::met_lights_ignored) return 0;
-        SolidAnglePdf other = scene.light_pdf(from, ray.direction, hit);
+        SolidAnglePdf other = scene.light_pdf(from, from_normal, ray.direction, hit);
         if (mistake == NeeMistake::met_density_ten_percent_off) other.value *= 0.9f;
         if (mistake == NeeMistake::met_density_unselected)
             other = scene.with_light(hit.light, [&]<class L>(const L& light) {

@@ -130,6 +130,17 @@ inline LibraryDescription floor_and_four_lamps() {
     return scene;
 }
 
+/// A floor close under 16 lamps in a square, 32 luminous triangles in all, some much brighter than others.
+inline LibraryDescription floor_and_many_lamps() {
+    auto scene = empty_view<AnyMaterial>("floor-and-many-lamps", {0, 0.6, 3}, {0, 0.3, 0}, 40);
+    scene.add(level({0, 0, 0}, 1, 1), scene.add(Lambert{Rgb(0.7f)}));
+    const std::size_t black = scene.add(Lambert{Rgb(0)});
+    for (int i = 0; i < 16; ++i)
+        scene.add(level({-0.75 + 0.5 * (i % 4), 0.4, -0.75 + 0.5 * (i / 4)}, 0.2, 0.2, false), black,
+                  Rgb(i % 3 == 0 ? 4.0f : 0.5f));
+    return scene;
+}
+
 /// A floor under a luminous sphere.
 inline LibraryDescription floor_and_round_lamp() {
     auto scene = empty_view<AnyMaterial>("floor-and-round-lamp", {0, 0.6, 3}, {0, 0.45, 0}, 40);
