@@ -34,6 +34,9 @@ inline constexpr std::array method_notes{
                 "be exact at once where it merges; takes memory for all light paths of an iteration"},
     MethodNotes{Mlt::name, "all light transport, by chains that stay where light is found: hidden lamps, caustics",
                 "spread its noise evenly: errors are blotches"},
+    MethodNotes{PathGuided::name,
+                "all light transport: path-nee that learns where light comes from, where that pays: light through gaps",
+                "help at once: what it learns takes some of the time"},
 };
 
 /// The notes on a method of `AnyMethod`.

@@ -55,6 +55,10 @@ M quick(M method) {
         method.bootstrap = 500;
         method.chains = 8;
     }
+    if constexpr (requires { method.always_guide; }) {
+        method.first_training = 8;
+        method.always_guide = true;
+    }
     return method;
 }
 
