@@ -35,7 +35,7 @@ inline constexpr std::array method_notes{
     MethodNotes{Mlt::name, "all light transport, by chains that stay where light is found: hidden lamps, caustics",
                 "spread its noise evenly: errors are blotches"},
     MethodNotes{PathGuided::name,
-                "all light transport: path-nee that learns where light comes from, where that pays: light through gaps",
+                "all light transport: path-nee that learns where light comes from; light through gaps",
                 "help at once: what it learns takes some of the time"},
 };
 

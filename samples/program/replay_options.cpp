@@ -26,7 +26,7 @@ std::uint64_t parse_count(std::string_view option, std::string_view text, int le
 void add_replay(CLI::App& app, ReplayCommand& command) {
     add_scene_options(app, command.scene);
     add_name(app, "-m,--method", "NAME", command.method,
-             "rendering method: " + list(known_methods) + "\n(default: path-nee)");
+             "rendering method:\n" + list(known_methods) + "\n(default: path-nee)");
     add_value(
         app, "--pixel", "X,Y", [&](const std::string& text) { command.pixel = parse_pixel(text); },
         "which pixel, counted from 0 at the top left");
