@@ -39,7 +39,7 @@ echo '#include <tbb/parallel_for.h>' > "$work/headers.cpp"
 measure "of which oneTBB's parallel_for.h" "$work/headers.cpp"
 over=0
 for scene in DiffuseScene FullScene TexturedScene; do
-  for method in Silhouette Phong PathTracer PathTracerNee LightTracer Bdpt PhotonMapping Vcm Mlt; do
+  for method in Silhouette Phong PathTracer PathTracerNee LightTracer Bdpt PhotonMapping Vcm Mlt PathGuided; do
     cat > "$work/pair.cpp" <<CPP
 #include <lightswitch/lightswitch.hpp>
 namespace ls = lightswitch;

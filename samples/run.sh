@@ -20,7 +20,7 @@ run_samples() {
   run ../lightswitch render cornell-spheres --spp 64 --seed 1 --output spheres.exr --output spheres.png
   run ../lightswitch render cornell-spheres --spp 64 --method path --output spheres-path.exr --stats spheres-path.json
   run ../lightswitch compare spheres.exr spheres-path.exr --output spheres-difference.png
-  for method in light bdpt photon vcm mlt; do
+  for method in light bdpt photon vcm mlt path-guided; do
     run ../lightswitch render cornell-spheres --spp 16 --method $method --output spheres-$method.png --output spheres-$method.exr
   done
   run ../lightswitch strategies cornell-spheres --size 96x96 --spp 16 --output spheres-strategies.png

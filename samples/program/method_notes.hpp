@@ -34,6 +34,9 @@ inline constexpr std::array method_notes{
                 "be exact at once where it merges; takes memory for all light paths of an iteration"},
     MethodNotes{Mlt::name, "all light transport: bdpt whose brightest finds chains spread out: caustics, rare light",
                 "be better than bdpt where nothing is rare; what is left of rare light is blotches"},
+    MethodNotes{PathGuided::name,
+                "all light transport: path-nee that learns where light comes from; light through gaps",
+                "help at once: what it learns takes some of the time"},
 };
 
 /// The notes on a method of `AnyMethod`.

@@ -138,7 +138,7 @@ void add_path_options(CLI::App& app, std::optional<int>& max_depth, std::optiona
 void add_render(CLI::App& app, RenderOptions& options) {
     add_scene_options(app, options.scene);
     add_name(app, "-m,--method", "NAME", options.method,
-             "rendering method: " + list(known_methods) + "\n(default: path-nee; see \"lightswitch methods\")");
+             "rendering method:\n" + list(known_methods) + "\n(default: path-nee; see \"lightswitch methods\")");
     add_outputs(app, options.outputs,
                 "image to write, by extension: .exr, .pfm, .hdr (linear) or .png\n(exposure, sRGB); may be repeated");
     add_values(
@@ -222,7 +222,7 @@ void add_render(CLI::App& app, RenderOptions& options) {
 void add_view(CLI::App& app, ViewOptions& options) {
     add_scene_options(app, options.scene);
     add_name(app, "-m,--method", "NAME", options.method,
-             "the method that is shown first: " + list(known_methods) + "\n(default: path-nee)");
+             "the method that is shown first:\n" + list(known_methods) + "\n(default: path-nee)");
     add_name(app, "-a,--against", "NAME", options.against,
              "the method that it is compared with, which renders in the\nbackground (default: none; Shift and a digit "
              "choose one)");

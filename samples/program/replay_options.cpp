@@ -26,7 +26,7 @@ std::uint64_t parse_count(std::string_view option, std::string_view text, int le
 void add_replay(CLI::App& app, ReplayCommand& command) {
     add_scene_options(app, command.scene);
     add_name(app, "-m,--method", "NAME", command.method,
-             "rendering method: " + list(known_methods) + "\n(default: path-nee)");
+             "rendering method:\n" + list(known_methods) + "\n(default: path-nee)");
     add_value(
         app, "--pixel", "X,Y", [&](const std::string& text) { command.pixel = parse_pixel(text); },
         "which pixel, counted from 0 at the top left");
@@ -53,8 +53,9 @@ void add_replay(CLI::App& app, ReplayCommand& command) {
         "bit, and lists what happened: where its paths went, with which densities and roulette, and every "
         "contribution\n"
         "with its strategy (s vertices from the light, t from the camera) and weight. z0 is the camera, y0 a light.\n"
-        "For light, photon and vcm, and for what others splat with bdpt, a whole iteration is made; for mlt all up to\n"
-        "that one, and its splats are told without their paths, as each chain's walk is one long path.\n\n"
+        "For light, photon and vcm, and for what others splat with bdpt, a whole iteration is made; for path-guided\n"
+        "what it learns before that one; for mlt all up to that one, and its splats are told without their paths, as\n"
+        "each chain's walk is one long path.\n\n"
         "Exit status: 0 done, 2 an error of which one line on standard error tells, 130 cancelled.\n\n"
         "Examples:\n"
         "  lightswitch replay cornell-box --pixel 100,120\n"

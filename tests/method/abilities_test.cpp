@@ -63,7 +63,7 @@ std::map<std::string_view, double> shares(const LibraryDescription& description,
 /// Those that make the paths of `member` (what a scene shows; null: what all methods make) show it all, within
 /// `tolerance`; the others hardly any of it.
 void check_who_shows(const std::map<std::string_view, double>& shares, bool PathClasses::*member, double tolerance) {
-    REQUIRE(shares.size() == 7);
+    REQUIRE(shares.size() == 8);
     for_each_method([&]<class M>(const M&) {
         if (M::kind == Kind::heuristic) return;
         CAPTURE(M::name);

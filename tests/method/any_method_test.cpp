@@ -38,7 +38,7 @@ std::string visited() {
 TEST_CASE("methods by name: the library's, and any other variant of methods") {
     static_assert(
         std::is_same_v<append_t<std::variant<Phong>, Mine, Silhouette>, std::variant<Phong, Mine, Silhouette>>);
-    CHECK(visited() == "silhouette phong path path-nee light bdpt photon vcm mlt ");
+    CHECK(visited() == "silhouette phong path path-nee light bdpt photon vcm mlt path-guided ");
     CHECK(visited<Beside>() == visited() + "mine ");
     CHECK(method_names<Alone>() == "mine, phong");
     CHECK(std::holds_alternative<Bdpt>(method_by_name("bdpt")));

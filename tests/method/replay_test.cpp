@@ -52,6 +52,10 @@ void check_sums(const PathReplay& replayed) {
 template <class M>
 M quick(M method) {
     if constexpr (requires { method.bootstrap; }) method.bootstrap = 500;
+    if constexpr (requires { method.always_guide; }) {
+        method.first_training = 8;
+        method.always_guide = true;
+    }
     return method;
 }
 

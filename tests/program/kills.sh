@@ -13,7 +13,7 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 
-methods=(path-nee bdpt photon vcm mlt light path phong silhouette)
+methods=(path-nee bdpt photon vcm mlt light path phong silhouette path-guided)
 killed=0 writing=0 renders=0
 while ((killed < kills)); do
     method=${methods[renders % ${#methods[@]}]}

@@ -152,7 +152,7 @@ TEST_CASE("options of single methods do what they say") {
 TEST_CASE("the depth of paths is that of the command line, for every method that has one") {
     // In the furnace every surface emits 1 and reflects half: depth d shows the first d terms of 1 + 1/2 + 1/4 + ...
     const Folder workspace;
-    for (const char* method : {"path", "path-nee", "light", "bdpt", "photon", "vcm", "mlt"})
+    for (const char* method : {"path", "path-nee", "light", "bdpt", "photon", "vcm", "mlt", "path-guided"})
         for (const auto& [depth, value] : {std::pair{"1", 1.0}, {"2", 1.5}}) {
             const Ended ended = run(workspace, {"render", "furnace", "--size", "16x16", "--spp", "64", "-m", method,
                                                 "--max-depth", depth, "-q", "-o", "x.pfm"});

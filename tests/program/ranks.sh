@@ -25,7 +25,7 @@ if job 2 "$program" render cornell-box --size 4x4 --spp 2 -o x.pfm 2>&1 | grep -
 fi
 
 # Every method whose iterations do not go on from one another, with filters wider than a pixel and splats.
-for method in silhouette path-nee light bdpt photon vcm; do
+for method in silhouette path-nee light bdpt photon vcm path-guided; do
     render=(render cornell-spheres --size 40x30 --filter gaussian --method $method --spp 23 --seed 5 --quiet)
     "$program" "${render[@]}" -o whole.pfm || fail "$method: no image"
     for ranks in 1 2 4; do

@@ -59,8 +59,9 @@ TEST_CASE("verify: by default all methods that can have the reference's image") 
         for (const auto& verdict : json["verdicts"]) names.insert(verdict["method"].get<std::string>());
         return names;
     };
-    CHECK(verified("cornell-box") == std::set<std::string>{"path", "light", "bdpt", "photon", "vcm", "mlt"});
-    CHECK(verified("cornell-spheres") == std::set<std::string>{"path", "bdpt", "photon", "vcm", "mlt"});
+    CHECK(verified("cornell-box") ==
+          std::set<std::string>{"path", "light", "bdpt", "photon", "vcm", "mlt", "path-guided"});
+    CHECK(verified("cornell-spheres") == std::set<std::string>{"path", "bdpt", "photon", "vcm", "mlt", "path-guided"});
 }
 
 TEST_CASE("verify: the reference makes what the methods make, or leaves out what they cannot") {
@@ -86,8 +87,9 @@ TEST_CASE("verify: the reference makes what the methods make, or leaves out what
     using Lines = std::set<std::string>;
     const std::string caustics = "caustics of point and directional lights";
     CHECK(compared("caustic.xml", {"--bootstrap", "1000"}) ==
-          Lines{"path-nee, bdpt, without " + caustics, "light, bdpt, without what is seen in mirrors or through glass",
-                "mlt, bdpt", "photon, bdpt, which lacks " + caustics + ", seen in mirrors or through glass",
+          Lines{"path-nee, bdpt, without " + caustics, "path-guided, bdpt, without " + caustics,
+                "light, bdpt, without what is seen in mirrors or through glass", "mlt, bdpt",
+                "photon, bdpt, which lacks " + caustics + ", seen in mirrors or through glass",
                 "vcm, bdpt, which lacks " + caustics + ", seen in mirrors or through glass"});
     CHECK(compared("caustic.xml", {"--methods", "vcm", "--reference", "path-nee"}) ==
           Lines{"vcm, path-nee, which lacks " + caustics});

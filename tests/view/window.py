@@ -19,7 +19,7 @@ from x11 import X11
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 CBOX = os.path.join(HERE, "..", "data", "cbox", "cbox.xml")
-METHODS = ["silhouette", "phong", "path", "path-nee", "light", "bdpt", "photon", "vcm", "mlt"]
+METHODS = ["silhouette", "phong", "path", "path-nee", "light", "bdpt", "photon", "vcm", "mlt", "path-guided"]
 VIEWS = ["image", "side by side", "split", "flicker", "difference", "relative difference", "significance", "albedo",
          "normal", "depth"]
 LINE = (255, 210, 80)  # of the split view

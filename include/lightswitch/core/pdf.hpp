@@ -55,6 +55,12 @@ template <Density P>
     return p.value > 0;
 }
 
+/// Of what is chosen in two ways, each density with its probability in it already.
+template <Density P>
+[[gnu::always_inline]] inline P operator+(P a, P b) {
+    return {a.value + b.value};
+}
+
 /// A ratio of densities of one measure, which has no unit.
 template <Density P>
 [[gnu::always_inline]] inline double operator/(const P& a, const P& b) {

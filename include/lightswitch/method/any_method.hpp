@@ -6,6 +6,7 @@
 #include <lightswitch/method/bdpt.hpp>
 #include <lightswitch/method/light_tracer.hpp>
 #include <lightswitch/method/mlt.hpp>
+#include <lightswitch/method/path_guided.hpp>
 #include <lightswitch/method/path_tracer.hpp>
 #include <lightswitch/method/path_tracer_nee.hpp>
 #include <lightswitch/method/phong.hpp>
@@ -24,7 +25,7 @@ namespace lightswitch {
 
 /// Any of the library's methods. One `std::visit` per render leads to code made for that method and scene type.
 using AnyMethod =
-    std::variant<Silhouette, Phong, PathTracer, PathTracerNee, LightTracer, Bdpt, PhotonMapping, Vcm, Mlt>;
+    std::variant<Silhouette, Phong, PathTracer, PathTracerNee, LightTracer, Bdpt, PhotonMapping, Vcm, Mlt, PathGuided>;
 
 namespace detail {
 

@@ -46,6 +46,9 @@ void add_settings(std::vector<RenderFact>& facts, const M& m) {
     if constexpr (requires { m.bootstrap; }) add("bootstrap", m.bootstrap);
     if constexpr (requires { m.mutations; }) add("mutations", m.mutations);
     if constexpr (requires { m.refine; }) add("refine", m.refine);
+    if constexpr (requires { m.first_training; }) add("first training", m.first_training);
+    if constexpr (requires { m.training; }) add("training", m.training);
+    if constexpr (requires { m.always_guide; }) add("always guide", m.always_guide);
     if constexpr (requires { m.settings(); })
         for (const auto& [name, value] : m.settings()) facts.emplace_back(name, value);
 }

@@ -148,6 +148,14 @@ public:
         run_units((n + per_unit - 1) / per_unit, units_per_wave, work);
     }
 
+    /// Runs `prepare()`, which may call `paths`, and counts none of its rays and paths: for what every session makes
+    /// again that goes on with a render or makes a part of it.
+    void uncounted(const auto& prepare) {
+        const RenderCounts before = counts_;
+        prepare();
+        counts_ = before;
+    }
+
 private:
     static constexpr int tile = detail::tile_side;
     static constexpr std::uint64_t units_per_wave =

@@ -92,6 +92,8 @@ public:
         });
     }
 
+    void uncounted(const auto& prepare) { prepare(); }
+
 private:
     template <class F>
     static constexpr bool can_splat = std::invocable<const F&, const Ray&, Sampler&, const PixelContext&>;

@@ -51,7 +51,7 @@ void Interface::make_commands() {
         "Method", "Hold", "P", GLFW_KEY_P, 0, [this] { live_->hold(!live_->held()); },
         [this] { return live_ && live_->held(); }, there);
     add(
-        "Compare", "with nothing", "Shift+9", GLFW_KEY_9, shift,
+        "Compare", "with nothing", "Shift+Backspace", GLFW_KEY_BACKSPACE, shift,
         [this] {
             live_->compare_with({});
             if (compares()) view_ = View::image;

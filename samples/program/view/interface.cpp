@@ -217,8 +217,10 @@ void Interface::next_non_finite() {
 void Interface::pick(int x, int y) {
     picked_ = {x, y};
     const auto& snapshot = live_->shown_method().snapshot;
-    // The sample of a chain takes all iterations before it: only who asks for it gets it.
-    if (snapshot && snapshot->iterations > 0 && live_->shown_method().name != Mlt::name)
+    // The sample of a chain takes all iterations before it, and a guided one all that was learnt: only who asks for it
+    // gets it.
+    const std::string& method = live_->shown_method().name;
+    if (snapshot && snapshot->iterations > 0 && method != Mlt::name && method != PathGuided::name)
         follow(static_cast<std::int64_t>(snapshot->iterations) - 1);
 }
 

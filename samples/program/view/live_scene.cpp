@@ -71,6 +71,9 @@ LiveScene::LiveScene(LoadedScene loaded, const ViewOptions& options, std::functi
         AnyMethod coarse = method;
         if (std::holds_alternative<Mlt>(method))
             coarse = Bdpt{.max_depth = length.max_depth, .rr_depth = length.rr_depth};
+        // What guides paths takes a while to learn, too.
+        if (std::holds_alternative<PathGuided>(method))
+            coarse = PathTracerNee{.max_depth = length.max_depth, .rr_depth = length.rr_depth};
         live_.add(method, coarse);
         methods_.push_back({.method = method,
                             .name = std::string(method_name(method)),

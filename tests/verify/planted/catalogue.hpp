@@ -45,6 +45,7 @@ std::vector<PlantedBug> method_bugs();
 std::vector<PlantedBug> bsdf_bugs();
 std::vector<PlantedBug> light_bugs();
 std::vector<PlantedBug> pixel_bugs();
+std::vector<PlantedBug> guided_bugs();
 
 // Parts of `correct_pairs`: the same copies without a mistake, against the library. They show that it is the mistake
 // that is found, and keep the copies in step with the library.
@@ -52,5 +53,6 @@ std::vector<CorrectPair> method_copies();
 std::vector<CorrectPair> bsdf_copies();
 std::vector<CorrectPair> light_copies();
 std::vector<CorrectPair> pixel_copies();
+std::vector<CorrectPair> guided_copies();
 
 }  // namespace lightswitch::test

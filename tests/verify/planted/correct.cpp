@@ -84,7 +84,7 @@ std::vector<CorrectPair> correct_pairs() {
         "path, exact", "inside-glass", [] { return inside_glass<AnyMaterial>(Dielectric{}); }, 2.25f, path);
     and_exact(
         "path-nee, exact", "white ball-in-sky", [] { return ball_in_sky<AnyMaterial>(Lambert{Rgb(1)}); }, 1, nee);
-    for (const auto& copies : {method_copies(), bsdf_copies(), light_copies(), pixel_copies()})
+    for (const auto& copies : {method_copies(), bsdf_copies(), light_copies(), pixel_copies(), guided_copies()})
         pairs.insert(pairs.end(), copies.begin(), copies.end());
     return pairs;
 }
