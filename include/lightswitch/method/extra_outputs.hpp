@@ -262,7 +262,7 @@ bool add_samples(const SceneType& scene, std::vector<OutputSums>& sums, int samp
             settings.observer({.iterations = static_cast<std::uint64_t>(i) + 1,
                                .seconds = seconds,
                                .fraction = fraction,
-                               .seconds_left = seconds * (1 / fraction - 1),
+                               .seconds_left = detail::seconds_left(seconds, fraction),
                                .film = film});
     }
     return true;

@@ -2,6 +2,8 @@
 
 // Whether guiding pays in a scene: pairs of samples of the same pixels with and without it.
 
+#include <lightswitch/core/floating_point.hpp>
+
 #include <array>
 #include <cstdint>
 #include <optional>

@@ -218,7 +218,7 @@ private:
         return {.iterations = total_,
                 .seconds = seconds_before_ + since_begin_,
                 .fraction = fraction,
-                .seconds_left = fraction > 0 ? since_begin_ * (1 / fraction - 1) : 0,
+                .seconds_left = seconds_left(since_begin_, fraction),
                 .film = session_.film()};
     }
 

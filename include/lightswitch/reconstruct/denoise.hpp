@@ -76,7 +76,7 @@ public:
                 settings_.observer({.iterations = samples(),
                                     .seconds = seconds,
                                     .fraction = fraction,
-                                    .seconds_left = fraction > 0 ? seconds * (1 / fraction - 1) : 0,
+                                    .seconds_left = detail::seconds_left(seconds, fraction),
                                     .film = halves_[0].film()});
         }
         cancelled_ = pause.stop_requested();

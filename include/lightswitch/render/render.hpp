@@ -212,7 +212,7 @@ void Session<SceneType, M, E>::run(Budget budget, const std::stop_token& pause) 
             settings_.observer({.iterations = film_.iterations(),
                                 .seconds = seconds,
                                 .fraction = fraction,
-                                .seconds_left = fraction > 0 ? seconds * (1 / fraction - 1) : 0,
+                                .seconds_left = detail::seconds_left(seconds, fraction),
                                 .film = film_});
         }
     }

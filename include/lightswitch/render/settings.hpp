@@ -57,6 +57,9 @@ struct RenderStatistics {
 
 namespace detail {
 
+/// Estimated, when so many seconds have spent that fraction of a budget; 0 where nothing can be told.
+inline double seconds_left(double seconds, double fraction) { return fraction > 0 ? seconds * (1 / fraction - 1) : 0; }
+
 /// Throws `Error` when a limit is not one.
 inline void check(const Budget& budget) {
     const auto check_limit = [](double limit, const char* what) {

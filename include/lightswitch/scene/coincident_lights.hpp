@@ -19,9 +19,9 @@ struct CoincidentLight {
     double share = 0;         ///< of its places that rays from in front do not see, about
 };
 
-/// Those of which rays from in front miss at least a quarter: of a block that stands on a floor it is a sixth. They are found by `most_rays` pairs of rays in all, at
-/// most 256 for each emitter and at least 8; of more emitters than that allows, every so manieth is looked at.
-/// Deterministic.
+/// Those of which rays from in front miss at least a quarter: of a block that stands on a floor it is a sixth. They are
+/// found by `most_rays` pairs of rays in all, at most 256 for each emitter and at least 8; of more emitters than that
+/// allows, every so manieth is looked at. Deterministic.
 template <class SceneType>
 std::vector<CoincidentLight> coincident_lights(const SceneType& scene, std::size_t most_rays = 65536) {
     const std::vector<Emitter>& emitters = scene.emitters();

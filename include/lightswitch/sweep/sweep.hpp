@@ -111,7 +111,7 @@ private:
         if (!options_.observer) return;
         const double seconds = now(TimeOf::wall) - begin_;
         fraction_ = std::max(fraction_, std::min((done_ + under_way()) / total_, 1.0));
-        options_.observer({seconds, fraction_, fraction_ > 0 ? seconds * (1 / fraction_ - 1) : 0, what_});
+        options_.observer({seconds, fraction_, detail::seconds_left(seconds, fraction_), what_});
     }
 
     /// What is being spent on the session at work, and was planned.
