@@ -193,20 +193,6 @@ TEST_CASE("--stats: every key, and alone on standard output") {
     CHECK(number(ended.out, "rays") >= 16 * 12 * 4);
     CHECK(number(ended.out, "rays") > number(ended.out, "shadow_rays"));
     CHECK(number(ended.out, "samples_per_second") == relative(16 * 12 * 4 / number(ended.out, "seconds"), 1e-6));
-    // A lamp in a wall, and one before it.
-    const auto lamp = [](const char* z) {
-        return small_scene(
-            std::string("<shape type=\"rectangle\"/>\n<shape type=\"rectangle\"><transform name=\"to_world\">") +
-            "<scale value=\"0.3\"/><rotate z=\"1\" angle=\"20\"/><translate z=\"" + z +
-            "\"/></transform><emitter type=\"area\"/></shape>");
-    };
-    workspace.write("in.xml", lamp("0"));
-    workspace.write("before.xml", lamp("0.001"));
-    const std::string in_wall = warnings("in.xml", "path-nee");
-    CHECK(in_wall.find(" % of this light lies in another surface") != std::string::npos);
-    CHECK(in_wall.find("<shape type=\"rectangle\">: about") != std::string::npos);
-    CHECK(run(workspace, {"info", "in.xml", "-D", "spp=1"}).says(" % of this light lies in another surface"));
-    CHECK(warnings("before.xml", "path-nee") == "");
     CHECK(run(workspace, furnace({"-m", "phong", "--stats", "-"})).prints("\"max_depth\": null"));
 }
 
@@ -284,6 +270,20 @@ TEST_CASE("warnings about what will not be seen") {
           std::string::npos);
     CHECK(warnings("dark.xml", "path-nee").find("warning: the scene has no light") != std::string::npos);
     CHECK(warnings("dark.xml", "silhouette") == "");
+    // A lamp in a wall, and one before it.
+    const auto lamp = [](const char* z) {
+        return small_scene(
+            std::string("<shape type=\"rectangle\"/>\n<shape type=\"rectangle\"><transform name=\"to_world\">") +
+            "<scale value=\"0.3\"/><rotate z=\"1\" angle=\"20\"/><translate z=\"" + z +
+            "\"/></transform><emitter type=\"area\"/></shape>");
+    };
+    workspace.write("in.xml", lamp("0"));
+    workspace.write("before.xml", lamp("0.001"));
+    const std::string in_wall = warnings("in.xml", "path-nee");
+    CHECK(in_wall.find(" % of this light lies in another surface") != std::string::npos);
+    CHECK(in_wall.find("<shape type=\"rectangle\">: about") != std::string::npos);
+    CHECK(run(workspace, {"info", "in.xml", "-D", "spp=1"}).says(" % of this light lies in another surface"));
+    CHECK(warnings("before.xml", "path-nee") == "");
     CHECK(run(workspace, furnace({"-m", "phong", "--max-depth", "3", "-o", "x.pfm"}))
               .says("warning: the method phong has no"));
 }

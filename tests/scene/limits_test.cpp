@@ -243,7 +243,7 @@ TEST_CASE("nothing leaks through the edges of a closed box, however near the cam
         description.camera.to_world =
             CameraDescription::look_at({1 - near, 1 - near, 0}, {1, 1, 0.3 * near}, {0.1, 1, 0.2});
         const GreyScene scene = build_grey(description);
-        CHECK(scene.statistics().robust == near < 1e-4);
+        CHECK(scene.statistics().robust == (near < 1e-4));
         const Vec3 eye(scene.space().point({1 - near, 1 - near, 0}));
         std::mt19937 random(1);
         std::uniform_real_distribution<float> number(-1, 1);
