@@ -30,9 +30,9 @@ struct Job {
     Settings settings;
     /// Called on the rendering thread after every iteration, with the number of rays; where ranks render together, on
     /// rank 0 after every round.
-    std::function<void(const Progress&, std::uint64_t rays)> progress;
+    std::function<void(const Progress&, std::uint64_t rays)> progress = [](const Progress&, std::uint64_t) {};
     /// Called then, or, where ranks render together, whenever rank 0 has all; that it gets when `due` says so.
-    std::function<void(const Progress&, const Halt&)> observer;
+    std::function<void(const Progress&, const Halt&)> observer = [](const Progress&, const Halt&) {};
     std::function<bool()> due = {};
     double longest_round = 10;  ///< seconds, of ranks
     /// From where to go on, if from anywhere, and what the scene holds, as a text.

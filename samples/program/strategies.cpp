@@ -152,7 +152,7 @@ int strategies(const StrategiesCommand& command) {
         job.settings.seed = command.seed;
         job.settings.threads = command.threads;
         job.settings.stop = cancellation.token();
-        job.observer = [&](const Progress& progress, const Halt&) {
+        job.progress = [&](const Progress& progress, std::uint64_t) {
             line.update(seconds(), fmt::format("{}: {:.0f} %", what, 100 * progress.fraction));
         };
         Rendered rendered = run(loaded.scene, bdpt, job);

@@ -294,8 +294,8 @@ TEST_CASE("damaged files are refused, whatever the damage, and so are others") {
     CHECK(refusal("").ends_with("is not the state of a render"));
     CHECK(refusal("PF\n1 1\n").ends_with("is not the state of a render"));
     std::string later = good;
-    later[detail::state_magic.size()] = 2;
-    CHECK(refusal(later).ends_with("is the state of a render in format 2, and this version reads 1"));
+    later[detail::state_magic.size()] = 9;
+    CHECK(refusal(later).ends_with("is the state of a render in format 9, and this version reads 2"));
     CHECK(message_of([&] { load_state(folder / "none.lsw"); }).ends_with("no such file"));
     MESSAGE("bytes a pixel of the file: " << double(good.size()) / (20 * 13));
 }

@@ -268,7 +268,7 @@ TEST_CASE("sweep: methods of one's own on a scene, in three lines, and what they
     const std::string html = report_html(report);
     for (const char* text : {"path-nee", "relMSE; bands", "The best method at each time"})
         CHECK(html.find(text) != std::string::npos);
-    CHECK(all_contenders(scene).size() == 7);
+    CHECK(all_contenders(scene).size() == 8);
 }
 
 TEST_CASE("sweep: what it cannot do is an error that says why") {

@@ -32,12 +32,12 @@ std::vector<CoincidentLight> coincident_lights(const SceneType& scene, std::size
         const Emitter& emitter = emitters[i];
         if (emitter.kind != Emitter::Kind::surface || emitter.light_count == 0) continue;
         RandomSequence random(i);
-        const auto next = [&] { return static_cast<float>(random.next() * 0x1.fffffep-1); };
         std::size_t seen = 0, missed = 0;
         for (std::size_t ray = 0; ray < rays; ++ray) {
             const auto number =
                 emitter.first_light + static_cast<std::size_t>(random.next() * double(emitter.light_count));
-            const Vec2 place(next(), next()), direction(next(), next());
+            const Vec2 place(random.next_float(), random.next_float());
+            const Vec2 direction(random.next_float(), random.next_float());
             Ray out;
             scene.with_light(scene.light_of_number(number), [&](const auto& light) {
                 if constexpr (requires { light.emit(place, direction); }) out = light.emit(place, direction).ray;
