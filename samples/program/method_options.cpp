@@ -68,7 +68,7 @@ void add_method_options(CLI::App& app, MethodOptions& options) {
             if (*options.radius > 1000) throw Error("--radius: it must be at most 1000 pixels");
         },
         "photon, vcm: radius in pixels within which light is gathered in\nthe first iteration "
-        "(default: photon 2, vcm 1); 0: vcm merges\nnothing");
+        "(default: photon 4, vcm 1); 0: vcm merges\nnothing");
     add(
         "--alpha", "A",
         [&](const std::string& text) {
@@ -79,10 +79,10 @@ void add_method_options(CLI::App& app, MethodOptions& options) {
     add(
         "--photon-paths", "N",
         [&](const std::string& text) { options.photon_paths = parse_number_option("--photon-paths", text, 0, true); },
-        "photon: light paths per pixel and iteration (default: 1)");
+        "photon: light paths per pixel and iteration (default: 0.5)");
     app.add_flag_callback(
            "--final-gather", [&] { options.final_gather = true; },
-           "photon: one more bounce before light is gathered, direct light by\nsampling the lamps (default: not)")
+           "photon: one more bounce before light is gathered (default: not)")
         ->group("Options of single methods");
     add(
         "--bootstrap", "N",

@@ -101,7 +101,7 @@ TEST_CASE("photons: the radius shrinks by the law of Knaus and Zwicker, and star
 
 TEST_CASE("photons: counts and statistics") {
     const FullScene scene = build_scene<AllBsdfs, AllLights>(scenes::lamp_in_sphere());
-    const PhotonMapping photon{.max_depth = 2, .paths_per_pixel = 4};
+    const PhotonMapping photon{.max_depth = 3, .paths_per_pixel = 4};
     Session<FullScene, PhotonMapping> session(scene, photon);
     session.run({.samples = 8});
     const RenderStatistics& statistics = session.statistics();
@@ -112,10 +112,10 @@ TEST_CASE("photons: counts and statistics") {
             if (key == name) return value;
         return -1.0;
     };
-    // The sphere is closed, so that every path leaves one photon where it first meets it.
+    // The sphere is closed, so that every path leaves one photon where it meets it for the second time.
     CHECK(of(statistics, "photons") == 4 * 256);
     CHECK(of(statistics, "photon_map_bytes") > 4 * 256 * 12);
-    CHECK(of(statistics, "radius_pixels") == relative(2 * std::pow(8.0, -1.0 / 6), 1e-4));
+    CHECK(of(statistics, "radius_pixels") == relative(4 * std::pow(8.0, -1.0 / 6), 1e-4));
 
     const Vcm vcm{.max_depth = 3};
     Session<FullScene, Vcm> merging(scene, vcm);

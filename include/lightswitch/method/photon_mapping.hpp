@@ -11,7 +11,8 @@ namespace lightswitch {
 
 /// Photon mapping (Jensen 1996), progressive (Knaus and Zwicker 2011): light paths leave photons where they meet
 /// surfaces that are not specular; paths from the camera go on to the first such surface and gather the photons around
-/// (and go on if it has a Dirac lobe, too).
+/// (and go on if it has a Dirac lobe, too). What comes straight from a light is not left to photons, which would blur
+/// shadows: there it is sampled by light and by BSDF, as by `PathTracerNee`.
 /// Every iteration has photons of its own and a smaller radius, so that the mean over the iterations converges to the
 /// exact image.
 struct PhotonMapping {
@@ -22,10 +23,9 @@ struct PhotonMapping {
     int max_depth = PathLength{}.max_depth;  ///< see `PathLength`
     int rr_depth = PathLength{}.rr_depth;
     double paths_per_pixel =
-        1;  ///< light paths of an iteration, over the number of pixels; at least one path is traced
-    MergeRadius radius = {.pixels = 2};
-    bool final_gather =
-        false;  ///< one more bounce before photons are gathered, and direct light by next event estimation
+        0.5;  ///< light paths of an iteration, over the number of pixels; at least one path is traced
+    MergeRadius radius = {.pixels = 4};
+    bool final_gather = false;  ///< one more bounce before photons are gathered
 
     class State {
     public:
@@ -58,8 +58,9 @@ struct PhotonMapping {
         state.paths.reset(light_paths);
         frame.paths(light_paths, [&](std::uint64_t path, auto& sampler, auto&) {
             state.paths.start(path);
-            trace_light_subpath(scene, sampler, {{max_depth, rr_depth}}, {},
-                                [&](const auto& y) { state.paths.push(path, photon_at(scene, y)); });
+            trace_light_subpath(scene, sampler, {{max_depth, rr_depth}}, {}, [&](const auto& y) {
+                if (y.edges > 1) state.paths.push(path, photon_at(scene, y));
+            });
         });
         if (frame.stopped()) return;
         state.paths.list(state.photons, frame.executor(), [](const Photon& photon) { return photon; });
@@ -73,7 +74,7 @@ private:
     Rgb radiance(const auto& scene, Ray ray, auto& sampler, const HashGrid<Photon>& map, float share) const {
         Rgb sum(0), throughput(1);
         float eta = 1;
-        bool gather = !final_gather;
+        bool gather = !final_gather, last = false;
         SampledLight sampled;
         for (int depth = 1;; ++depth) {
             const auto hit = scene.intersect(ray);
@@ -89,20 +90,18 @@ private:
                 tell(scene, Contributed{Finding::light_met, 0, depth + 1, weight, found});
                 sum += found;
             }
-            if (depth == max_depth) return sum;
+            if (depth == max_depth || last) return sum;
             const bool diffuse = connectable(scene, *hit);
             const bool gathers = diffuse && gather;
             if (gathers) {
                 const Rgb found = throughput * estimate(scene, *hit, depth, map) * share;
                 tell(scene, Contributed{Finding::merged, 0, depth + 1, 1, found});
                 sum += found;
-                // What a Dirac lobe beside smooth ones shows no photon tells.
-                if (!scene.with_bsdf(*hit, [](const auto& bsdf) { return has_dirac_lobe(bsdf); })) return sum;
             }
 
             const Vec2 direction = sampler.next_2d(), choices = sampler.next_2d();
             const Basis basis = hit->shading_frame();
-            if (diffuse && !gathers) {
+            if (diffuse) {
                 float weight = 1;
                 const Rgb found = throughput * direct_light(scene, *hit, choices.x, sampler.next_2d(), weight);
                 tell(scene, Contributed{Finding::light_sampled, 1, depth + 1, weight, found});
@@ -112,7 +111,9 @@ private:
             const auto scattered = scene.with_bsdf(*hit, [&](const auto& bsdf) {
                 return bsdf.sample(basis.to_local(hit->wo), Vec3(direction, choices.x), Transport::radiance);
             });
-            if (!scattered || (gathers && !scattered->specular)) return sum;
+            if (!scattered) return sum;
+            // After photons were gathered, lights are looked for, and what a Dirac lobe shows beside smooth ones.
+            last = gathers && !scattered->specular;
             throughput *= scattered->weight;
             eta *= scattered->eta;
             tell_bounce(scene, *scattered, basis.to_world(scattered->wi), throughput, eta, depth, rr_depth, choices.y);
