@@ -58,8 +58,7 @@ void warn_about_coincident_lights(const AnyScene& scene, const LibraryDescriptio
         const bool known = origins.size() == emitters;
         print_warning(
             fmt::format("{}about {:.0f} % of this light lies in another surface, so that rounding decides where it is "
-                        "seen, and methods "
-                        "differ: move it off by a thousandth of its size",
+                        "seen, and methods differ: move it off by a thousandth of its size",
                         known ? origins[found[i].emitter].prefix() : fmt::format("light {}: ", found[i].emitter + 1),
                         100 * found[i].share));
     }

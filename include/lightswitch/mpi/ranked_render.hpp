@@ -33,7 +33,8 @@ public:
         ranks_.agree(difference_from_root());
         before_ = ranks_.all(session_.made().count()).front();
         seconds_before_ = ranks_.all(session_.statistics().seconds).front();
-        made_ = made_by_root();
+        made_ = IterationSet(
+            of_root(session_.made().ranges(), &IterationRange::seed, &IterationRange::begin, &IterationRange::end));
         total_ = gathered_ = before_;
         refuse_other_machines();
         if (budget_.error > 0) judged_at_ = std::max<std::uint64_t>(total_, 16);
@@ -85,16 +86,22 @@ private:
         return limit > total_ ? limit - total_ : 0;
     }
 
-    std::string difference_from_root() const {
-        std::vector<RenderFact> facts = session_.facts;
+    /// The rows that rank 0 has, on every rank.
+    template <class T, class... Member>
+    std::vector<T> of_root(std::vector<T> rows, Member T::*... members) const {
         std::string bytes;
         ArchiveWriter writer(bytes);
-        keep_columns(writer, facts, &RenderFact::first, &RenderFact::second);
-        const std::string of_root = ranks_.of_root(bytes);
-        const auto seeds = ranks_.all(session_.seed);
-        ByteReader in(of_root, "rank 0");
+        keep_columns(writer, rows, members...);
+        const std::string received = ranks_.of_root(bytes);
+        ByteReader in(received, "rank 0");
         ArchiveReader reader(in);
-        keep_columns(reader, facts, &RenderFact::first, &RenderFact::second);
+        keep_columns(reader, rows, members...);
+        return rows;
+    }
+
+    std::string difference_from_root() const {
+        const std::vector<RenderFact> facts = of_root(session_.facts, &RenderFact::first, &RenderFact::second);
+        const auto seeds = ranks_.all(session_.seed);
         const std::string difference = first_difference(session_.facts, facts);
         if (!difference.empty()) return "renders something else than rank 0: " + difference + " on rank 0";
         const auto own = static_cast<std::size_t>(ranks_.rank());
@@ -102,21 +109,6 @@ private:
         return std::count(seeds.begin(), seeds.end(), seeds[own]) == 1
                    ? ""
                    : "iterations of " + session_.name + " go on from one another: every rank needs a seed of its own";
-    }
-
-    IterationSet made_by_root() const {
-        std::string bytes;
-        std::vector<IterationRange> ranges = session_.made().ranges();
-        ArchiveWriter writer(bytes);
-        const auto keep = [&](auto& archive) {
-            keep_columns(archive, ranges, &IterationRange::seed, &IterationRange::begin, &IterationRange::end);
-        };
-        keep(writer);
-        const std::string of_root = ranks_.of_root(bytes);
-        ByteReader in(of_root, "rank 0");
-        ArchiveReader reader(in);
-        keep(reader);
-        return IterationSet(std::move(ranges));
     }
 
     /// On other machines Embree may use other instructions, and the program may be built another way.

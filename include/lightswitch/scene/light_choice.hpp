@@ -37,7 +37,7 @@ public:
     /// Whether there is no light that could be chosen.
     bool empty() const { return table_.empty(); }
 
-    /// Where a path is to start: the light for `u` in [0, 1), and with which probability.
+    /// Where a path is to start: the light for `u` in [0, 1), and the probability with which a light is chosen so.
     std::size_t start(float u) const { return table_.sample(u); }
     float start_probability(std::size_t number) const { return table_.probability(number); }
 

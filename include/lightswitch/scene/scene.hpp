@@ -59,8 +59,7 @@ public:
     Scene with_camera(const CameraDescription& camera) const { return with_camera(camera, film()); }
 
     /// The same scene seen by any `Camera` in render space, such as one of one's own. Methods that connect light paths
-    /// to the camera need a `ConnectableCamera`. `id` tells apart its images from those of others; when empty, its rays
-    /// do.
+    /// to it need a `ConnectableCamera`. `id` tells apart its images from those of others; when empty, its rays do.
     template <Camera One>
     Scene<Bsdfs<B...>, Lights<L...>, Cameras<One>> with_camera(One camera, std::string id = {}) const {
         const FilmDescription own{
@@ -248,6 +247,7 @@ public:
         return {kind, number - contents_->first_light[kind]};
     }
     std::size_t light_count() const { return contents_->first_light[sizeof...(L)]; }
+
     /// Calls `f(light)` with that light as its concrete type, and returns what it returns.
     template <class F>
     [[gnu::always_inline]] decltype(auto) with_light(TypedIndex light, F&& f) const {
