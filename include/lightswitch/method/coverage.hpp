@@ -23,8 +23,8 @@ struct Coverage {
     };
     std::array<Part, std::size_t(side* side* lengths)> parts{};
 
-    /// A contribution `brightness` of a path of `length` segments at `place` in [0, 1)^2 of the film (others count to the
-    /// border), of which `too_much` was left.
+    /// A contribution `brightness` of a path of `length` segments at `place` in [0, 1)^2 of the film (others count to
+    /// its border), of which `too_much` was left.
     void add(const Vec2& place, int length, double brightness, double too_much) {
         light += brightness;
         if (!(too_much > 0)) return;
